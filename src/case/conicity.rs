@@ -157,6 +157,7 @@ pub fn conicity(case: &Case, options: &ConicityOptions, told: &dyn Fn(&str)) -> 
             "conicity is that of a wheelset on its track",
         ));
     };
+    case.profiles().swept("give the rail one section by `along` in [rail]")?;
     let pairs = [TrackSide::Left, TrackSide::Right].map(|side| &case.profiles().on(Some(side)).pair);
     let mut report = contact_geometry(system, pairs, position.roll, options, told)?;
     report.findings.extend(points_apart(case));

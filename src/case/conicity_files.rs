@@ -148,7 +148,7 @@ pub fn conicity_page(case: &Case, report: &ConicityReport) -> Result<SweepPage> 
 fn wheelset(case: &Case) -> Result<&WheelsetOnTrack> {
     match &case.standing().place {
         Place::Wheelset { system, .. } => Ok(system),
-        Place::Points { .. } | Place::Wheel { .. } => {
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => {
             let expected = "[track] and [wheelset]";
             Err(Error::new("", "a single wheel", expected, "conicity is that of a wheelset on its track"))
         }

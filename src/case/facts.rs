@@ -38,7 +38,7 @@ const KILO: f64 = 1e-3;
 const MILLI: f64 = 1e3;
 
 /// The facts of a contact, in the order in which they are shown.
-pub const FACTS: [Fact; 26] = [
+pub const FACTS: [Fact; 27] = [
     number("C on the rail, x", "mm", &["rail", "contact_x_mm"], (1.0, 3), |part| {
         Some(part.site.contact.placement.rail().point().station.x)
     }),
@@ -50,6 +50,10 @@ pub const FACTS: [Fact; 26] = [
     }),
     number("rolling radius", "mm", &["rolling_radius_mm"], (1.0, 3), |part| {
         Some(part.site.contact.placement.rolling_radius())
+    }),
+    unless_0("contact pitch", "mrad", &["contact_pitch_rad"], (MILLI, 3), |part| {
+        // 0 without a sign.
+        Some(0.0 - part.site.contact.placement.turn())
     }),
     unless_0("skew", "mrad", &["skew_rad"], (MILLI, 3), |part| Some(part.site.contact.placement.skew())),
     number("approach", "mm", &["approach_mm"], (1.0, 5), |part| part.site.contact.approach),

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::drawn::{Drawn, loops_of, quads};
+use super::drawn::{Drawn, frame_of, loops_of, quads};
 use super::elements::{surface_mesh, surfaces_around, triangles};
 use super::formats::{Of, OutputFormat, Writer};
 use super::in_place::in_place;
@@ -16,9 +16,9 @@ use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
-    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, InPlace,
-    Interval, Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh,
-    boundary_csv, interpen_csv, interpen_sigma_csv,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Interval,
+    Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh, boundary_csv,
+    interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
 use crate::mesh::Surface;
@@ -310,9 +310,15 @@ fn always<'a>(part: &'a Part, s: &'a Sources<'a>, on_rail: Option<&'a OnRail<'a>
     let mut jobs = vec![
         bytes("boundary.csv", || Ok(boundary_csv(s.loops).into_bytes())),
         bytes("interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes())),
-        bytes("midsep.txt", move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes())),
         bytes("patch.svg", || Ok(s.picture.svg().into_bytes())),
     ];
+    // A rail that varies has no midplane of its own.
+    if placement.lofted().is_none() {
+        jobs.push(bytes(
+            "midsep.txt",
+            move || Ok(midplane_table(placement, &part.site.grid.xi).into_bytes()),
+        ));
+    }
     if let Some(on_rail) = on_rail {
         jobs.push(bytes("interpen_sigma.csv", || Ok(interpen_sigma_csv(&on_rail.intervals()).into_bytes())));
     }
@@ -344,25 +350,40 @@ struct RailColumns {
 
 impl RailColumns {
     fn new(part: &Part) -> Self {
-        let section = &part.site.contact.placement.rail().section;
+        let placement = &part.site.contact.placement;
+        if placement.lofted().is_some() {
+            // Along η = 0, and where it has no surface there from the tangent plane.
+            let mut bodies = Evaluator::new(placement);
+            let column = |&xi: &f64| {
+                let normal = bodies.normals(xi, 0.0).rail.map_or([0.0, 1.0], |normal| [normal.x, normal.z]);
+                (Some(bodies.lower_height(xi, 0.0)).filter(|zeta| !zeta.is_nan()).unwrap_or(0.0), normal)
+            };
+            let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = part.site.grid.xi.iter().map(column).unzip();
+            return Self { roller: Self::roller(part, &height), height, normal };
+        }
+        let section = &placement.rail().section;
         let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
         let column = |s: Station| (s.z, [-s.sin, s.cos]);
         let columns =
             part.site.grid.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
-        let (height, normal) = columns.unzip();
-        Self { height, normal, roller: Self::roller(part) }
+        let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = columns.unzip();
+        Self { roller: Self::roller(part, &height), height, normal }
     }
 
-    /// Computes the surface of a roller over the grid; `None` for a rail.
-    fn roller(part: &Part) -> Option<RollerFields> {
+    /// Computes the surface of a roller, or of a rail that varies along the track, over the grid; `None` for an extruded rail.
+    fn roller(part: &Part, height: &[f64]) -> Option<RollerFields> {
         let placement = &part.site.contact.placement;
-        let under = placement.under()?;
-        let (mut bodies, mut evaluator) = (Evaluator::new(placement), Evaluator::new(under));
+        if placement.under().is_none() && placement.lofted().is_none() {
+            return None;
+        }
+        let mut bodies = Evaluator::new(placement);
+        let mut evaluator = placement.under().map(Evaluator::new);
         let mut fields = RollerFields::default();
-        for &xi in &part.site.grid.xi {
+        for (&xi, height) in part.site.grid.xi.iter().zip(height) {
             for &eta in &part.site.grid.eta {
                 let normal = bodies.normals(xi, eta).rail;
-                fields.fall.push(evaluator.separation(xi, eta));
+                let fall = evaluator.as_mut().map(|under| under.separation(xi, eta));
+                fields.fall.push(fall.unwrap_or_else(|| height - bodies.lower_height(xi, eta)));
                 fields.normal.push(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
             }
         }
@@ -376,7 +397,7 @@ fn header(run: &Run, part: &Part) -> Header {
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: run.case.echo.hash.clone(),
         approach: part.site.approach(),
-        frame: Frame::from(&part.site.contact.placement.rail().contact_frame()),
+        frame: frame_of(&part.site.contact.placement),
         remarks: remarks(run, part),
     }
 }

@@ -33,10 +33,16 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
             let side = if left { system.left() } else { system.right() };
             ([side.track().rail_x(), side.track().rail_z()], side.wheelset().wheel_x())
         }
-        Place::Points { .. } | Place::Wheel { .. } => ([0.0; 2], 0.0),
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => ([0.0; 2], 0.0),
     };
+    if let Some(lofted) = placement.lofted() {
+        let [x, y, z] = lofted.origin();
+        let origin = Vector4::new(x, y - run.case.standing.along, z, 1.0);
+        let columns = lofted.axes().map(|[x, y, z]| Vector4::new(x, y, z, 0.0));
+        let frame = Matrix4::from_columns(&[columns[0], columns[1], columns[2], origin]);
+        return mirrored_to(left, rail) * frame;
+    }
     let c = placement.rail().point.station;
-    let mirrored = if left { -1.0 } else { 1.0 };
     let in_meridian = Matrix4::from_columns(&[
         Vector4::new(c.cos, 0.0, c.sin, 0.0),
         Vector4::new(0.0, 1.0, 0.0, 0.0),
@@ -52,8 +58,14 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
     } else {
         Matrix4::new_translation(&Vector3::new(0.0, -axle_point(placement, -half).y, 0.0))
     };
+    mirrored_to(left, rail) * upright * in_meridian
+}
+
+/// Gives the transform from the axes of a side's rail profile, at this place of the track, to those of the track.
+fn mirrored_to(left: bool, rail: [f64; 2]) -> Matrix4<f64> {
+    let mirrored = if left { -1.0 } else { 1.0 };
     let to_track = Matrix4::new_translation(&Vector3::new(rail[0], 0.0, rail[1]));
-    Matrix4::new_nonuniform_scaling(&Vector3::new(mirrored, 1.0, 1.0)) * to_track * upright * in_meridian
+    Matrix4::new_nonuniform_scaling(&Vector3::new(mirrored, 1.0, 1.0)) * to_track
 }
 
 /// Gives what shows all of a run in the axes of the track: both rails, both wheels at first touch, patches, boundaries and contact
@@ -99,7 +111,7 @@ fn statements(run: &Run) -> Vec<String> {
         Place::Wheelset { .. } => {
             "track axes: x to the right, y forward, z up; origin in the middle, top of rail"
         }
-        Place::Points { .. } | Place::Wheel { .. } => {
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => {
             "axes of the rail profile: x to the field side, y along, z up"
         }
     };

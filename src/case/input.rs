@@ -10,12 +10,14 @@ use super::doubts::Doubt;
 use super::formats::{File, OutputFormat, Writer};
 use super::landmarks::SideLandmarks;
 use crate::conformal::Reference;
+use crate::error::{Error, Result};
 use crate::load::{Elastic, effective_modulus};
+use crate::lofted::Loft;
 use crate::measured::Record;
 use crate::numerics::bodies::Bodies;
 use crate::placement::Motion;
 use crate::placement::Pair;
-use crate::search::{Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
+use crate::search::{LoftedPair, Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
 use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
@@ -52,6 +54,8 @@ pub struct SideProfiles {
     pub pair: Pair,
     /// The record of each; `None` for a drawn profile.
     pub measured: Bodies<Option<Record>>,
+    /// The rail's surface where it varies along the track: `pair` then has a section of it.
+    pub loft: Option<Arc<Loft>>,
 }
 
 impl SideProfiles {
@@ -64,7 +68,24 @@ impl SideProfiles {
 impl Profiles {
     /// Makes the profiles of both sides from a pair that nothing was measured of.
     pub fn drawn(pair: Pair) -> Self {
-        Self { right: SideProfiles { pair, measured: Bodies::default() }, left: None }
+        Self { right: SideProfiles { pair, measured: Bodies::default(), loft: None }, left: None }
+    }
+
+    /// Tells whether a rail varies along the track.
+    pub fn varies(&self) -> bool {
+        self.sides().any(|(_, profiles)| profiles.loft.is_some())
+    }
+
+    /// Refuses rails that vary along the track, for what takes rails of one profile.
+    ///
+    /// # Errors
+    /// A rail that varies; `advice` says what can be had instead.
+    pub fn swept(&self, advice: &str) -> Result<()> {
+        if !self.varies() {
+            return Ok(());
+        }
+        let expected = "rails of one profile each, or `along` in [rail]";
+        Err(Error::new("rail", "a rail that varies along the track", expected, advice))
     }
 
     /// Gives those of a side; a single wheel has the right-hand side's.
@@ -89,9 +110,11 @@ pub struct Standing {
     pub within: f64,
     /// Whether the roll of a wheelset, where it is solved, is that at which each wheel carries its load.
     pub roll_by_load: bool,
+    /// Where the middle of the axle is along rails that vary, in the coordinate of their lists \[mm\]; 0 on others.
+    pub along: f64,
 }
 
-/// The three ways to place bodies.
+/// The ways to place bodies.
 #[derive(Debug, Clone)]
 pub enum Place {
     /// Both profiles touch at chosen points of them, the Report's way.
@@ -106,6 +129,13 @@ pub enum Place {
         /// The profiles, prepared for searches.
         profiles: Arc<ProfilePair>,
         /// Where the wheel stands.
+        pose: Pose,
+    },
+    /// A single wheel is lowered onto a rail that varies along the track.
+    OnSlices {
+        /// Rail and wheel, prepared for searches.
+        pair: Arc<LoftedPair>,
+        /// Where the wheel stands across.
         pose: Pose,
     },
     /// A wheelset is lowered onto its track.
@@ -326,6 +356,8 @@ impl Case {
         for (side, profiles) in self.profiles.sides() {
             let findings = profiles.measured.both().into_iter().flatten().flat_map(|record| &record.warnings);
             let place = side.map_or_else(String::new, |side| format!("{side} side: "));
+            let surface = profiles.loft.iter().flat_map(|loft| &loft.warnings);
+            out.extend(surface.map(|warning| format!("{place}rail: {warning}")));
             out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
         }
         out

@@ -8,7 +8,7 @@ use super::contact::PlacedContact;
 use super::found::{Found, PlaceOfContact};
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::overlaps::RegionRules;
-use super::wheel::{Region, Wheel, carry};
+use super::wheel::{OnLoft, Region, Wheel, carry, placed_at};
 use crate::error::{Error, ErrorKind, Result};
 use crate::placement::Placement;
 use crate::search;
@@ -208,8 +208,15 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
             let places = touch.contacts.to_vec();
             Ok(vec![Side { side: None, height: touch.height, roll: pose.roll(), places }])
         }
+        Place::OnSlices { pair, pose } => {
+            let Some((height, places)) = pair.touch(pose, case.standing.along, &selection)? else {
+                return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
+            };
+            Ok(vec![Side { side: None, height, roll: pose.roll(), places }])
+        }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
+            search.stand_at(case.standing.along, 0.0);
             let position = Position { roll: roll.map_or(position.roll, Roll::Fixed), ..*position };
             let Some(touch) = search.touch(&position, &selection)? else {
                 let expected =
@@ -232,7 +239,9 @@ type Carried = std::result::Result<Vec<Vec<Region>>, Option<TrackSide>>;
 /// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
 fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
     let rules = rules(case, false);
-    let wheel = |side: &Side| Wheel::over(&case.profiles.on(side.side).pair, &side.places, rules);
+    let wheel = |side: &Side| {
+        Wheel::over(&case.profiles.on(side.side).pair, on_loft(case, side.side), &side.places, rules)
+    };
     let modulus = case.question.modulus();
     let mut all = Vec::new();
     match approach {
@@ -264,6 +273,17 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
         }
     }
     Ok(Ok(all))
+}
+
+/// Gives the rail of a side that varies along the track.
+fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
+    let loft = case.profiles.on(side).loft.as_ref()?;
+    let along = case.standing.along;
+    let from = match &case.standing.place {
+        Place::Wheelset { system, position } => system.along(side != Some(TrackSide::Left), position, along),
+        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => along,
+    };
+    Some(OnLoft { loft, from })
 }
 
 fn rules(case: &Case, alone: bool) -> RegionRules {
@@ -304,7 +324,8 @@ impl Side {
         let mut placed = Vec::new();
         if regions.is_empty() {
             for place in self.places.iter().take_while(|place| place.gap <= within) {
-                let placement = place.placed(&case.profiles.on(self.side).pair)?;
+                let pair = &case.profiles.on(self.side).pair;
+                let placement = placed_at(place, pair, on_loft(case, self.side))?;
                 let found = self.found(placed.len() + 1, place)?;
                 placed.push(PlacedContact::new(placement, None, modulus)?.found_as(found));
             }

@@ -140,7 +140,7 @@ impl Run {
         let half = match &self.case.standing.place {
             Place::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
             Place::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
-            Place::Points { .. } | Place::Wheel { .. } => 0.0,
+            Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => 0.0,
         };
         let motion = if left { motion.mirrored() } else { motion };
         motion.creepages(&part.site.contact.placement, half, self.free_radius()?).map(Some)

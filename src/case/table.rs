@@ -23,6 +23,7 @@ pub fn table(case: &Case, lateral: [f64; 2], tolerance: f64, hertz: bool) -> Res
         let expected = "[track] and [wheelset]";
         return Err(Error::new("table", "a single wheel", expected, "a table is of a wheelset on its track"));
     };
+    case.profiles().swept("take `wheelrail march`")?;
     if case.standing.roll_by_load {
         let expected = "\"solve\", \"neglect\" or an angle in rad";
         let advice = "a table is of wheels at first touch: change it";

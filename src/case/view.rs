@@ -9,7 +9,7 @@ use crate::export::{PageConformal, PageFrame, PageLoop, PagePressure, ViewContac
 use crate::mesh::equal_steps;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
-use crate::separation::{EtaAxis, Values, plan};
+use crate::separation::{EtaAxis, Evaluator, Values, plan};
 
 /// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
 const MOST_SHOWN: usize = 16;
@@ -86,6 +86,11 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.parts.len() > MOST_SHOWN {
         notes.push(format!("The page shows the first {MOST_SHOWN} of {} contacts.", run.parts.len()));
     }
+    if run.case.profiles.varies() {
+        notes.push(
+            "Rails that vary along the track are drawn in space as if one section went on; separations are those of their surface.".into(),
+        );
+    }
     if run.parts.iter().any(|part| part.analysis.conformal.is_some()) {
         notes.push(
             "The gap t is that along the rail's turning normal, over the same ξ and η as s: δ closes t by δ cos α. Areas of its \
@@ -110,7 +115,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
     let mut separation = Values::new(n * n);
     plan.fill(placement, &xi, &axis, &mut separation);
-    let rail = &placement.rail().section;
+    let mut below = Evaluator::new(placement);
     let both = run.case.profiles.left.is_some() && part.site.side() == Some(TrackSide::Left);
     let mut warnings = part.refusals();
     warnings.extend_from_slice(&part.warnings);
@@ -121,10 +126,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
         skew: placement.skew(),
         approach: part.site.contact.approach.filter(|approach| *approach > 0.0),
         area: patch.map(Patch::area),
-        rail_height: xi
-            .iter()
-            .map(|&xi| rail.branch_at(xi).map_or(f64::NAN, |branch| branch.height(xi)))
-            .collect(),
+        rail_height: xi.iter().map(|&xi| below.lower_height(xi, 0.0)).collect(),
         separation: separation.to_vec(),
         boundary: patch.map_or_else(Vec::new, |patch| boundary(patch, |point| point)),
         conformal: conformal(part, &xi, &axis, question.tolerance),

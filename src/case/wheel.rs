@@ -10,8 +10,9 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::input::FrameOrigin;
 use super::overlaps::{Overlap, RegionRules, overlaps};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
+use crate::lofted::Loft;
 use crate::mesh::groups;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
@@ -27,9 +28,26 @@ pub(super) const SETTLED: f64 = 3e-4;
 /// Demand on the load that wheels carry, relative: below the error of the cells.
 const CARRIED: f64 = 2e-4;
 
+/// A rail that varies along the track, and where a wheel stands over it.
+#[derive(Clone, Copy)]
+pub(super) struct OnLoft<'a> {
+    pub loft: &'a Arc<Loft>,
+    /// Coordinate \[mm\] in the list of slices from which places count.
+    pub from: f64,
+}
+
+/// Places a pair at a place that a search found.
+///
+/// # Errors
+/// A place of another pair.
+pub(super) fn placed_at(place: &search::Contact, pair: &Pair, on: Option<OnLoft<'_>>) -> Result<Placement> {
+    on.map_or_else(|| place.placed(pair), |on| place.placed_on(pair, on.loft, on.from))
+}
+
 /// A wheel over its rail, with the places where it may touch.
 pub(super) struct Wheel<'a> {
     pair: &'a Pair,
+    on: Option<OnLoft<'a>>,
     /// The first one touches first.
     places: Vec<Reached>,
     rules: RegionRules,
@@ -41,19 +59,15 @@ pub(super) struct Wheel<'a> {
 struct Reached {
     /// (x, z) on the rail \[mm\].
     rail: Point2<f64>,
-    /// Abscissa \[mm\] on rail and wheel, each with the angle of ξ in its own axes \[rad\].
-    along: [[f64; 2]; 2],
-    /// χ \[rad\].
-    skew: f64,
-    /// ν \[rad\] ahead of a roller's crown.
-    turn: f64,
+    /// As the search found it; `None` for chosen points.
+    found: Option<search::Contact>,
     /// Vertical gap at first touch \[mm\].
     gap: f64,
     /// Cosine of the angle between its normal and the vertical.
     cos: f64,
     /// The pair placed there, once it was asked for.
     placement: Option<Arc<Placement>>,
-    /// Where C lies along the rail \[mm\].
+    /// Where C lies along the rail \[mm\], in the list's coordinate on one that varies.
     y: f64,
     /// The pressures of its groups of parts under the last approach.
     known: Vec<Pressures>,
@@ -115,8 +129,14 @@ impl Region {
 
     /// Tells whether the group of parts around C holds a place of contact.
     fn holds(&self, place: &Reached) -> bool {
+        let within = |at: f64, [from, to]: [f64; 2]| from <= at && at <= to;
+        if let Some(lofted) = self.placement.lofted() {
+            let [xi, eta, _] = lofted.seen([place.rail.x, place.y, place.rail.y]);
+            let holds = |extent: &Window| within(xi, extent.xi) && within(eta, extent.eta);
+            return self.extents.first().is_some_and(holds);
+        }
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
-        self.extents.first().is_some_and(|extent| extent.xi[0] <= xi && xi <= extent.xi[1])
+        self.extents.first().is_some_and(|extent| within(xi, extent.xi))
     }
 
     /// Gives what the wheel sinks by \[mm\], of the region that touches first.
@@ -132,19 +152,22 @@ impl Region {
 
 impl<'a> Wheel<'a> {
     /// Makes a wheel of the places that a search found, the lowest gap first.
-    pub(super) fn over(pair: &'a Pair, places: &[search::Contact], rules: RegionRules) -> Self {
+    pub(super) fn over(
+        pair: &'a Pair,
+        on: Option<OnLoft<'a>>,
+        places: &[search::Contact],
+        rules: RegionRules,
+    ) -> Self {
         let reached = |place: &search::Contact| Reached {
             rail: Point2::new(place.rail_x, place.rail_z),
-            along: [[place.rail_x, place.contact_angle], [place.wheel_x, place.wheel_angle]],
-            skew: place.skew,
-            turn: place.turn,
+            found: Some(*place),
             gap: place.gap,
             cos: place.contact_angle.cos() * place.turn.cos(),
             placement: None,
-            y: place.y,
+            y: place.y + on.map_or(0.0, |on| on.from),
             known: Vec::new(),
         };
-        Self { pair, places: places.iter().map(reached).collect(), rules, upright: None }
+        Self { pair, on, places: places.iter().map(reached).collect(), rules, upright: None }
     }
 
     /// Makes a wheel that touches at chosen points.
@@ -152,17 +175,14 @@ impl<'a> Wheel<'a> {
         let Station { x, z, .. } = placement.rail().point.station;
         let place = Reached {
             rail: Point2::new(x, z),
-            along: [placement.rail(), placement.wheel()]
-                .map(|body| [body.point.station.x, body.contact_angle()]),
-            skew: placement.skew(),
-            turn: placement.turn(),
+            found: None,
             gap: 0.0,
             cos: placement.upright(),
             placement: Some(Arc::new(placement)),
             y: 0.0,
             known: Vec::new(),
         };
-        Self { pair, places: vec![place], rules, upright: None }
+        Self { pair, on: None, places: vec![place], rules, upright: None }
     }
 
     /// Finds the regions under an approach δ \[mm\] of the first place; the first region is that place's.
@@ -225,11 +245,12 @@ impl<'a> Wheel<'a> {
 
     fn placement(&mut self, index: usize) -> Result<Arc<Placement>> {
         let place = &mut self.places[index];
-        let placement = match place.placement.take() {
-            Some(placement) => placement,
-            None => {
-                let placed = self.pair.placed_along(place.along[0], place.along[1], place.skew)?;
-                Arc::new(placed.turned(place.turn))
+        let placement = match (place.placement.take(), &place.found) {
+            (Some(placement), _) => placement,
+            (None, Some(found)) => Arc::new(placed_at(found, self.pair, self.on)?),
+            (None, None) => {
+                let expected = "a placed pair";
+                return Err(Error::new("contact", "chosen points without one", expected, "place it"));
             }
         };
         Ok(Arc::clone(place.placement.insert(placement)))
@@ -245,16 +266,12 @@ impl<'a> Wheel<'a> {
             for (k, extent) in region.extents.iter().enumerate() {
                 let space = HalfSpace::over(&region.placement, extent, region.approach);
                 let [xi, eta] = space.middle();
-                let frame = region.placement.rail().contact_frame();
-                let (at, normal) = (frame * Point2::new(xi, 0.0), frame * Vector2::y());
-                spaces.push(Located {
-                    region: match place.known.get(k) {
-                        Some(known) => space.beginning_at(known),
-                        None => space,
-                    },
-                    middle: Point3::new(at.x, y + eta, at.y),
-                    normal: Vector3::new(normal.x, 0.0, normal.y),
-                });
+                let (middle, normal) = in_space(&region.placement, y, [xi, eta]);
+                let region = match place.known.get(k) {
+                    Some(known) => space.beginning_at(known),
+                    None => space,
+                };
+                spaces.push(Located { region, middle, normal });
             }
         }
         let mut pressed = press(&spaces, SETTLED, modulus)?.into_iter();
@@ -271,6 +288,17 @@ impl<'a> Wheel<'a> {
         let ellipse = curvatures(&*self.placement(0)?).under_load(load, modulus);
         Ok(ellipse.map_or(USUAL_APPROACH, |ellipse| ellipse.approach_mm) / self.places[0].cos)
     }
+}
+
+/// Gives a point (ξ, η) \[mm\] of the tangent plane and its normal in axes that all regions of a wheel share; `y` is where C lies.
+fn in_space(placement: &Placement, y: f64, [xi, eta]: [f64; 2]) -> (Point3<f64>, Vector3<f64>) {
+    if let Some(lofted) = placement.lofted() {
+        let [along_xi, along_eta, normal] = lofted.axes().map(Vector3::from);
+        return (Point3::from(lofted.origin()) + xi * along_xi + eta * along_eta, normal);
+    }
+    let frame = placement.rail().contact_frame();
+    let (at, normal) = (frame * Point2::new(xi, 0.0), frame * Vector2::y());
+    (Point3::new(at.x, y + eta, at.y), Vector3::new(normal.x, 0.0, normal.y))
 }
 
 /// Gives a placed pair in the frame of the same place whose ζ is vertical.

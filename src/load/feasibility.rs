@@ -5,13 +5,16 @@ use serde::Serialize;
 
 use crate::patch::skewed::monotone::monotone;
 use crate::patch::skewed::valleys::Valleys;
-use crate::patch::{least_on_roller, turning_points};
+use crate::patch::{Patch, Window, least_on_roller, turning_points};
 use crate::placement::Placement;
 use crate::separation::{Evaluator, midplane_gap};
 
 /// Overlap, as a share of the profiles' extent, up to which a contact counts as feasible: rounding of the
 /// profile and of its drawing's tangents (1e-10 mm on a wheel), far below what any solver resolves.
 const ROUNDING: f64 = 1e-12;
+
+/// The same on a rail that varies: the search follows its places to 1e-9 of a cell, and the frame's normal with them.
+const ROUNDING_OF_PLACES: f64 = 1e-11;
 
 /// The answer to (4.1).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -42,6 +45,8 @@ pub struct Feasibility {
 /// axle's distance. Exact to rounding, but for two turns within a quarter of a stretch between joints: see the docs on
 /// numerics.
 ///
+/// On a rail that varies along the track s is searched as the patch is: [`Patch::new`].
+///
 /// Cost: some ten nanoseconds a joint without skew, some hundred with it.
 ///
 /// # Examples
@@ -58,6 +63,9 @@ pub struct Feasibility {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
+    if placement.lofted().is_some() {
+        return on_varying_rail(placement);
+    }
     let along_zeta = match (placement.skew() == 0.0, placement.under()) {
         (true, _) => least_in_midplane(placement)?,
         (false, None) => least_under_skew(placement)?,
@@ -72,6 +80,19 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     let agreed = feasible == apart(along_zeta.0);
     let (least_separation_mm, at_xi_mm, at_eta_mm) = vertical.filter(|_| !agreed).unwrap_or(along_zeta);
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
+}
+
+/// The least s on a rail that varies along the track: at C, or where the bodies overlap most.
+fn on_varying_rail(placement: &Placement) -> Option<Feasibility> {
+    let at_contact = Evaluator::new(placement).separation(0.0, 0.0);
+    let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
+    // Below 0 by what counts as rounding, which would otherwise make patches of its own around C.
+    let overlap = Patch::new(placement, -ROUNDING_OF_PLACES * extent, &Window::UNBOUNDED);
+    let places = overlap.components.iter().map(|component| component.deepest);
+    let own = std::iter::once([at_contact, 0.0, 0.0]).filter(|[s, ..]| !s.is_nan());
+    let [least, xi, eta] = own.chain(places).min_by(|a, b| a[0].total_cmp(&b[0]))?;
+    let feasible = overlap.components.is_empty();
+    Some(Feasibility { feasible, least_separation_mm: least, at_xi_mm: xi, at_eta_mm: eta })
 }
 
 /// (gap, ξ, η) \[mm\] of the least vertical gap in the midplane, the place on the rail; `None` under skew.

@@ -19,8 +19,10 @@
 mod around;
 mod bicubic;
 mod build;
+mod framed;
 mod joining;
 mod kept;
+mod section;
 mod strip;
 mod tree;
 
@@ -28,5 +30,6 @@ pub(crate) use around::turned;
 pub use around::{Flat, LoftedWheel};
 pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, SPACING, Slice};
+pub use framed::{FramedLoft, LoftFoot};
 pub use joining::Joining;
 pub use strip::{Interval, Strip};

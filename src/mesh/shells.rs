@@ -5,11 +5,16 @@ use std::f64::consts::PI;
 use nalgebra::{Point2, Point3};
 
 use super::surfaces::wheel_point;
+use crate::lofted::{FramedLoft, SPACING};
 use crate::placement::Placement;
 use crate::profile::{Profile, Station, trace};
 
 /// How far a shell is carried beyond what the profile describes \[mm\], so that it has a back.
 const BACK: f64 = 20.0;
+
+/// Steps along and across the track of the shells of rails that vary \[mm\].
+const ALONG: f64 = 10.0;
+const ACROSS: f64 = 1.0;
 
 /// Step of the traces that outlines are thinned from \[mm\].
 const TRACED: f64 = 0.25;
@@ -36,6 +41,9 @@ impl BodyShell {
         if let Some(under) = placement.under() {
             let half_angle = (half_length / under.rolling_radius()).min(PI);
             return Self::wheel(under, half_angle, tolerance).upside_down();
+        }
+        if let Some(lofted) = placement.lofted() {
+            return Self::lofted(lofted, half_length);
         }
         let stations = outline(placement.rail().profile(), tolerance);
         let low = stations.iter().map(|station| station.z).fold(f64::INFINITY, f64::min) - BACK;
@@ -65,6 +73,38 @@ impl BodyShell {
             ring.iter().map(|station| wheel_point(placement, station, psi)).collect()
         };
         Self::swept((0..=count as usize).map(turned).collect())
+    }
+
+    /// Makes the parts of a rail that varies, as far along the track from C, each closed below.
+    fn lofted(lofted: &FramedLoft, half_length: f64) -> Self {
+        let middle = lofted.origin()[1];
+        let mut all = Self { points: Vec::new(), faces: Vec::new() };
+        for strip in &lofted.loft().strips {
+            let [from, to] = strip.reach();
+            let [from, to] = [from.max(middle - half_length), to.min(middle + half_length)];
+            if from >= to {
+                continue;
+            }
+            let sections = ((to - from) / ALONG).ceil() as usize;
+            let nodes = (strip.cells() as f64 * SPACING / ACROSS).ceil() as usize;
+            let at = |j: usize| from + (to - from) * j as f64 / sections as f64;
+            let outline = |y: f64| -> Vec<[f64; 2]> {
+                (0..=nodes).map(|k| strip.point((strip.cells() * k) as f64 / nodes as f64, y).at).collect()
+            };
+            let outlines: Vec<Vec<[f64; 2]>> = (0..=sections).map(|j| outline(at(j))).collect();
+            let low = outlines.iter().flatten().map(|at| at[1]).fold(f64::INFINITY, f64::min) - BACK;
+            let points = |(j, outline): (usize, Vec<[f64; 2]>)| {
+                let corners = [outline[nodes], outline[0]].map(|[x, _]| [x, low]);
+                let all = outline.into_iter().chain(corners);
+                all.map(|[x, z]| Point3::from(lofted.seen([x, at(j), z]))).collect()
+            };
+            let part = Self::swept(outlines.into_iter().enumerate().map(points).collect());
+            let first = all.points.len();
+            all.points.extend(part.points);
+            let moved = |face: Vec<usize>| face.into_iter().map(|node| first + node).collect();
+            all.faces.extend(part.faces.into_iter().map(moved));
+        }
+        all
     }
 
     /// Returns the shell mirrored under ζ → −ζ.

@@ -7,6 +7,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3, distance_squared};
 
 use crate::error::{Error, ErrorKind, Result, finite};
+use crate::lofted::FramedLoft;
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
@@ -28,6 +29,9 @@ const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
 /// Largest distance of the wheel's surface before and behind C, as a share of the rolling radius. Towards the whole radius
 /// the surface becomes vertical.
 const WIDEST: f64 = 0.5;
+
+/// Step along the track over a rail that varies \[mm\]; across it has the surface's own cells.
+const CELL: f64 = 0.5;
 
 /// Distance of a point from the surface that s sees, as a share of the profile's extent, below which it is on it: a thousand
 /// times more than the rounding of both, and far less than any wall.
@@ -91,6 +95,9 @@ impl Surface {
         if let Some(under) = placement.under() {
             return Self::wheel(under, window, tolerance).map(Self::upside_down);
         }
+        if let Some(lofted) = placement.lofted() {
+            return Self::lofted(lofted, window);
+        }
         let stations = trace(placement.rail(), window.xi, tolerance)?;
         let radius = placement.rolling_radius();
         let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)?
@@ -104,6 +111,35 @@ impl Surface {
             along.iter().map(|&eta| (in_space(here, eta), Vector3::new(up.x, 0.0, up.y))).collect::<Vec<_>>()
         };
         Self::of(Side::Rail, &stations, along.len(), nodes)
+    }
+
+    /// Makes the surface of the part of a rail that varies which C lies on, over its own cells.
+    fn lofted(lofted: &FramedLoft, window: &Window) -> Result<Self> {
+        let nowhere = || Error::new("surface", "no surface of the rail at C", "one", "choose another place");
+        let foot = lofted.foot(0.0, 0.0, None).ok_or_else(nowhere)?;
+        let strip = &lofted.loft().strips[foot.strip];
+        let [first, last] = strip.reach();
+        let [along, ahead] = [lofted.origin()[1], lofted.axes()[1][1]];
+        let eta = [window.eta[0].min(0.0), window.eta[1].max(0.0)];
+        let [from, to] = eta.map(|eta| (along + ahead * eta).clamp(first, last));
+        let steps = ((to - from) / CELL).ceil().max(1.0);
+        let places: Vec<f64> = (0..=steps as usize).map(|k| from + (to - from) * k as f64 / steps).collect();
+        let inside = |u: f64| {
+            let [x, z] = strip.point(u, along.clamp(first, last)).at;
+            let xi = lofted.seen([x, along, z])[0];
+            window.xi[0].min(0.0) <= xi && xi <= window.xi[1].max(0.0)
+        };
+        let nodes: Vec<f64> = (0..=strip.cells()).map(|k| k as f64).filter(|&u| inside(u)).collect();
+        bounded(nodes.len() as f64 * places.len() as f64)?;
+        let node = |u: f64, y: f64| {
+            let p = strip.point(u, y);
+            let [across, along] = [[p.across[0], 0.0, p.across[1]], [p.along[0], 1.0, p.along[1]]]
+                .map(|v| Vector3::from(lofted.axes().map(|axis| Vector3::from(axis).dot(&Vector3::from(v)))));
+            (Point3::from(lofted.seen([p.at[0], y, p.at[1]])), across.cross(&along).normalize())
+        };
+        let all = nodes.iter().flat_map(|&u| places.iter().map(move |&y| node(u, y)));
+        let (points, normals) = all.unzip();
+        Ok(Self { side: Side::Rail, n: [nodes.len(), places.len()], points, normals })
     }
 
     /// Makes the wheel's surface, before any approach, over a window of the contact frame, as far as its profile goes. C is

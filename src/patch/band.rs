@@ -5,6 +5,7 @@ use super::grading::Grading;
 use super::outline::{End, Outline};
 use super::slice::Slice;
 use super::stretch::{Fit, Stretch};
+use super::varying::SMOOTH;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::numerics::quadrature::smooth_integrals;
@@ -123,10 +124,13 @@ impl Band {
         let middle = self.xi[0] + (self.xi[1] - self.xi[0]) / 2.0;
         let valley = self.valley(middle);
         let depth = outline.slicer.depth_over(valley, middle).abs();
-        let square = outline
+        let square: f64 = outline
             .slicer
             .edges(middle, valley)
             .map_or(0.0, |[low, high]| ((high.eta - low.eta) / 2.0).powi(2));
+        if outline.slicer.varying.is_some() {
+            return SMOOTH * square;
+        }
         ROUNDINGS * f64::EPSILON * square * (1.0 + nan_max(size[0], size[1]) / depth)
     }
 

@@ -9,6 +9,7 @@ use super::outline::{End, Outline, Window};
 use super::plain;
 use super::skewed::lanes;
 use super::slice::Slice;
+use super::varying;
 use crate::placement::Placement;
 
 /// Number of points on each of the two sides of a loop. The polygon then lies within 1e-4 of the patch's width of the
@@ -87,6 +88,8 @@ impl Patch {
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
     /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
     /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
+    /// On a rail that varies along the track a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
+    /// 1 mm along η; what lies more than 120 mm ahead of C or behind is left out, and the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window))
     }
@@ -163,8 +166,14 @@ struct Region {
 
 /// Collects the bands of the patch into components, by ascending ξ.
 fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
-    let (mut bands, turns) =
-        if outline.slicer.skewed.is_some() { lanes::bands(outline) } else { plain::bands(outline) };
+    let placement = outline.slicer.placement();
+    let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
+        varying::bands(varying, placement, &outline.window)
+    } else if outline.slicer.skewed.is_some() {
+        lanes::bands(outline)
+    } else {
+        plain::bands(outline)
+    };
     bands.sort_by(|a, b| a.xi[0].total_cmp(&b.xi[0]));
     let meeting: Vec<[usize; 2]> = (0..bands.len())
         .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
@@ -209,7 +218,8 @@ impl Region {
 
     fn component(mut self, outline: &mut Outline<'_>) -> Component {
         // Without skew the slices do not say more about the least s.
-        let known = outline.slicer.skewed.is_none().then(|| self.deepest(outline, &[]));
+        let known = (outline.slicer.skewed.is_none() && outline.slicer.varying.is_none())
+            .then(|| self.deepest(outline, &[]));
         let rows = self.rows(outline, known.map(|known| known[0]));
         let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
         let window = outline.window.eta;
@@ -249,7 +259,8 @@ impl Region {
     /// without skew.
     fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
         let [a, b] = self.xi();
-        let plain = outline.slicer.placement().skew() == 0.0;
+        let varying = outline.slicer.varying.is_some();
+        let plain = outline.slicer.placement().skew() == 0.0 && !varying;
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             let [from, to] = band.xi;
@@ -257,13 +268,18 @@ impl Region {
             let mut more = Vec::new();
             if let Some(least) = least {
                 corners::plain(outline, band, least, &mut more);
-            } else {
+            } else if !varying {
                 let eta = reach(outline, band);
                 corners::skewed(outline, band, eta, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
             band.fit(outline);
+            if varying {
+                // Its interpolants are smooth between their own ends only.
+                band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi[1]));
+                sort(&mut band.corners);
+            }
             let mut rows: Rows = band.rows(&graded(band, b - a));
             corners::at_window(band, &rows, &mut more);
             if !more.is_empty() {

@@ -14,6 +14,7 @@ pub(crate) mod skewed;
 mod slice;
 mod stretch;
 pub(crate) mod turning_points;
+mod varying;
 
 pub(crate) use band::{Band, Places};
 pub use components::{Component, Patch};

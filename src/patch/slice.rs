@@ -5,6 +5,7 @@
 
 use super::by_roots::ByRoots;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
+use super::varying::Varying;
 use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
 use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
@@ -45,6 +46,8 @@ pub struct Slicer<'a> {
     pub(super) by_roots: Option<ByRoots<'a>>,
     /// The slices under a skewed wheel on a rail; `None` without skew.
     pub(super) skewed: Option<Skewed<'a>>,
+    /// The slices on a rail that varies along the track; `None` on a swept one.
+    pub(super) varying: Option<Varying<'a>>,
     approach: f64,
 }
 
@@ -57,8 +60,9 @@ impl<'a> Slicer<'a> {
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
             by_roots: ByRoots::on_roller(placement, approach),
-            skewed: (placement.skew() != 0.0 && placement.under().is_none())
+            skewed: (placement.skew() != 0.0 && placement.under().is_none() && placement.lofted().is_none())
                 .then(|| Skewed::new(placement, approach)),
+            varying: Varying::new(placement, approach),
             approach,
         }
     }
@@ -82,6 +86,10 @@ impl<'a> Slicer<'a> {
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
     pub(super) fn joints(&self, [a, b]: [f64; 2]) -> Vec<f64> {
+        if self.varying.is_some() {
+            // Its cells' sides are no lines of constant ξ.
+            return Vec::new();
+        }
         let over_rail = self.by_roots.as_ref().and_then(ByRoots::normal_gap);
         let joints = match over_rail {
             Some(gap) => gap.rail().joints(),
@@ -103,6 +111,10 @@ impl<'a> Slicer<'a> {
     /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
     /// bodies.
     pub fn depth(&mut self, xi: f64) -> f64 {
+        if let Some(varying) = &mut self.varying {
+            let eta = varying.lowest(xi, None);
+            return varying.separation(xi, eta) - self.approach;
+        }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.depth(xi);
         }
@@ -134,6 +146,9 @@ impl<'a> Slicer<'a> {
 
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`.
     pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[Edge; 2]> {
+        if let Some(varying) = &mut self.varying {
+            return varying.edges(xi, valley);
+        }
         if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
             return skewed.edges(xi, valley);
         }
@@ -155,7 +170,7 @@ impl<'a> Slicer<'a> {
         let one = |skewed: &Skewed<'_>| {
             skewed.valleys.is_one_between([xi[0].min(xi[MANY - 1]), xi[0].max(xi[MANY - 1])])
         };
-        self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
+        self.varying.is_none() && self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
@@ -191,6 +206,9 @@ impl<'a> Slicer<'a> {
     /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its
     /// surface ends; NaN where the wheel has no surface.
     pub fn lowest(&mut self, xi: f64) -> f64 {
+        if let Some(varying) = &mut self.varying {
+            return varying.lowest(xi, None);
+        }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.lowest(xi);
         }
@@ -200,6 +218,9 @@ impl<'a> Slicer<'a> {
 
     /// Returns η of a valley at ξ \[mm\]; 0 without skew.
     pub(super) fn valley(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        if let Some(varying) = &mut self.varying {
+            return varying.lowest(xi, valley);
+        }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.lowest(xi);
         }

@@ -6,8 +6,8 @@ mod motion;
 mod placed;
 mod track;
 
-#[cfg(feature = "files")]
-pub(crate) use motion::on_roller;
 pub use motion::{Creepages, Motion, Pitch, Rates};
+#[cfg(feature = "files")]
+pub(crate) use motion::{on_roller, on_varying_rail};
 pub use placed::{Body, Generator, Pair, Placement};
 pub use track::{RailDistance, Track, WheelDistance, Wheelset};

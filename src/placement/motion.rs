@@ -105,10 +105,13 @@ impl Motion {
     /// assumed. The part of the velocity along ζ does not enter: it opens or closes the contact.
     ///
     /// # Errors
-    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known.
+    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known; a rail that varies.
     pub fn creepages(&self, placement: &Placement, half: f64, radius: f64) -> Result<Creepages> {
         if placement.under().is_some() {
             return Err(on_roller());
+        }
+        if placement.lofted().is_some() {
+            return Err(on_varying_rail());
         }
         let Rates { lateral, vertical, yaw, roll, pitch } = self.rates;
         let pitch = match pitch {
@@ -162,6 +165,12 @@ impl Creepages {
 pub(crate) fn on_roller() -> Error {
     let expected = "a rail at rest; creepages are not available for rollers yet";
     Error::new("motion", "a motion over a roller", expected, "leave the motion out")
+}
+
+/// Returns the error of a motion over a rail that varies along the track.
+pub(crate) fn on_varying_rail() -> Error {
+    let expected = "rails of one profile each; creepages are not available for others yet";
+    Error::new("motion", "a motion over a rail that varies", expected, "leave the motion out")
 }
 
 /// Directions in the contact frame (ξ, η, ζ), all of length 1.

@@ -6,6 +6,7 @@ use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 
 use super::along::wheel_along;
 use crate::error::{Error, Result, finite};
+use crate::lofted::FramedLoft;
 use crate::profile::{Profile, ProfilePoint, Section, Side};
 
 /// How a body is swept from its profile.
@@ -80,6 +81,8 @@ pub struct Placement {
     at_contact: bool,
     /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward; 0 on a rail.
     turn: f64,
+    /// The rail's surface where it varies along the track; the rail's profile is then its section through C.
+    lofted: Option<Arc<FramedLoft>>,
     /// How far the frame's origin lies ahead of C along η \[mm\].
     ahead: f64,
     /// The pair of [`Self::under`], made once.
@@ -192,7 +195,7 @@ impl Pair {
     pub fn placed_like(&self, other: &Placement) -> Placement {
         let [rail, wheel] = [(&self.rail, &other.rail), (&self.wheel, &other.wheel)]
             .map(|(swept, like)| Body::in_frame(swept, like.point));
-        Placement { rail, wheel, under: OnceLock::new(), ..other.clone() }
+        Placement { rail, wheel, lofted: None, under: OnceLock::new(), ..other.clone() }
     }
 }
 
@@ -340,7 +343,8 @@ impl Swept {
 impl Placement {
     fn touching(rail: Body, wheel: Body, skew: f64) -> Result<Self> {
         let skew = finite("contact: skew", skew)?;
-        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, ahead: 0.0, under: OnceLock::new() })
+        let (lofted, under) = (None, OnceLock::new());
+        Ok(Self { rail, wheel, skew, at_contact: true, turn: 0.0, lofted, ahead: 0.0, under })
     }
 
     /// Returns the same contact at the angle ν \[rad\] ahead of a roller's crown.
@@ -348,13 +352,23 @@ impl Placement {
         Self { turn, ..self }
     }
 
-    /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward: the contact frame's ζ leans forward by it. 0 on a
-    /// rail.
+    /// Puts the wheel over a rail that varies along the track, seen from this contact.
+    pub(crate) fn over_loft(self, lofted: Arc<FramedLoft>) -> Self {
+        Self { lofted: Some(lofted), ..self }
+    }
+
+    /// The surface of a rail that varies along the track, in the contact frame; `None` for a swept one.
+    pub fn lofted(&self) -> Option<&FramedLoft> {
+        self.lofted.as_deref()
+    }
+
+    /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward: the contact frame's ζ leans forward by it. On a rail that
+    /// varies along the track that of the common normal; 0 on an extruded one.
     pub fn turn(&self) -> f64 {
         self.turn
     }
 
-    /// Cosine of the angle between the common normal and the vertical: cosθ, on a roller cosθ cosν.
+    /// Cosine of the angle between the common normal and the vertical: cosθ, cosθ cosν on a roller and on a rail that varies.
     pub fn upright(&self) -> f64 {
         self.rail.point.station.cos * self.turn.cos()
     }
@@ -365,8 +379,9 @@ impl Placement {
     pub fn under(&self) -> Option<&Self> {
         let made = || {
             let [rail, wheel] = self.rail.upside_down()?;
-            let (at_contact, under) = (self.at_contact, OnceLock::new());
-            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, ahead: 0.0, under }))
+            let at_contact = self.at_contact;
+            let (lofted, under) = (None, OnceLock::new());
+            Some(Box::new(Self { rail, wheel, skew: 0.0, at_contact, turn: 0.0, lofted, ahead: 0.0, under }))
         };
         self.under.get_or_init(made).as_deref()
     }
@@ -424,12 +439,18 @@ impl Placement {
     /// what [`Self::ahead`] tells; the skew changes as well.
     ///
     /// # Errors
-    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line.
+    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line; a rail that varies along the
+    /// track.
     pub fn reframed(&self, rail_x: f64, angle: f64) -> Result<Self> {
         if self.skew != 0.0 && self.rail.generator() != Generator::Extruded {
             let found = format!("a skew of {} rad over a roller", self.skew);
             let advice = "keep the frame of the contact point";
             return Err(Error::new("contact", found, "a wheel without yaw, or a rail", advice));
+        }
+        if self.lofted.is_some() {
+            let expected = "a rail of one profile, whose sections are all alike";
+            let advice = "keep the frame of the contact point";
+            return Err(Error::new("contact", "a rail that varies along the track", expected, advice));
         }
         let mut point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
         let here = self.rail.contact_frame();

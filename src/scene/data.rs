@@ -9,6 +9,7 @@ use super::profile_data::ProfileData;
 use super::side_data::SideData;
 use crate::case::{FrameOrigin, OutputFormat};
 use crate::conformal::Reference;
+use crate::error::{Result, finite};
 use crate::search::{Position, Roll};
 use crate::separation::Method;
 
@@ -72,6 +73,20 @@ pub fn schema() -> schemars::Schema {
 }
 
 impl Scene {
+    /// Gives the place along the track at which a wheelset or a wheel stands on rails that vary \[mm\]; `None` of a scene without one.
+    ///
+    /// # Errors
+    /// A place that is not finite.
+    pub(super) fn along(&self) -> Result<Option<f64>> {
+        let of_wheelset = self.wheelset.as_ref().and_then(|wheelset| wheelset.along);
+        let of_wheel = self.contact.as_ref().and_then(|contact| contact.along);
+        match (of_wheelset, of_wheel) {
+            (Some(along), _) => finite("wheelset: along", along).map(Some),
+            (None, Some(along)) => finite("contact: along", along).map(Some),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// Lists the profiles that it describes, those of both sides and those of one.
     pub fn profiles(&self) -> impl Iterator<Item = &ProfileData> {
         let sides = [&self.left, &self.right].into_iter().flatten();
@@ -128,6 +143,9 @@ pub struct ContactData {
     #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
+    /// Where the wheel's centre is along a rail that varies, mm, as its list of slices counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
 }
 
 /// A track of two rails: the right one is as described, the left one is its mirror image.
@@ -184,6 +202,10 @@ pub struct WheelsetData {
     #[schemars(extend("minimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
+    /// Where the middle of the axle is along rails that vary, mm, as their lists of slices count; `wheelrail march` goes along all of
+    /// them and does not take it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<f64>,
 }
 
 // serde prescribes the reference to the value.

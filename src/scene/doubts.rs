@@ -125,8 +125,9 @@ fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut V
     ];
     let bodies = [("rail", own.pair.rail()), ("wheel", own.pair.wheel())];
     for (k, (body, profile)) in bodies.into_iter().enumerate() {
-        // The kinks of standards are theirs, and those of measured profiles their files'.
-        if data[k].profile.is_none() && own.measured.both()[k].is_none() {
+        // The kinks of standards are theirs, those of measured profiles their files', and those of a section its slices'.
+        let section = k == 0 && own.loft.is_some();
+        if !section && data[k].profile.is_none() && own.measured.both()[k].is_none() {
             out.extend(usual::kinks(&own_place(side, body), profile));
         }
     }

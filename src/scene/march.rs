@@ -204,7 +204,7 @@ impl Lists {
 }
 
 /// Returns the list of slices of a body that varies; `None` for one profile, or a section of a list.
-fn list_of(data: &ProfileData, side: Side) -> Option<&PathBuf> {
+pub(super) fn list_of(data: &ProfileData, side: Side) -> Option<&PathBuf> {
     let listed = |file: &&PathBuf| listed_body(&file.display().to_string()) == Some(side);
     data.file.as_ref().filter(listed).filter(|_| data.along.is_none() && data.angle.is_none())
 }

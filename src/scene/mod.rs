@@ -13,6 +13,7 @@ mod profiles;
 mod read;
 mod resolve;
 mod side_data;
+mod sides;
 mod standing;
 pub(crate) mod words;
 

@@ -6,13 +6,10 @@ use std::path::Path;
 use super::data::Scene;
 use super::profile_data::ProfileData;
 use super::read::parse;
-use super::side_data::SideData;
 use super::words::nearest;
-use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
 use crate::measured::{self, Cut, Measured, Options, Record, SliceList, Unit};
-use crate::numerics::bodies::Bodies;
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 
@@ -53,45 +50,6 @@ pub type Given = BTreeMap<String, (Option<Side>, Profile)>;
 
 /// Where the profiles of a scene come from: its folder, and those that are given.
 pub(super) type Sources<'a> = (&'a Path, &'a Given);
-
-/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to the folder; each
-/// one is opened once.
-///
-/// # Errors
-/// Anything that is wrong with a profile; the error names the key.
-pub(super) fn profiles(scene: &Scene, sources: Sources<'_>) -> Result<Profiles> {
-    let both = || of_side(scene, [&scene.rail, &scene.wheel], ["rail", "wheel"], sources);
-    let own = |name: &str, side: &Option<SideData>| {
-        let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
-        if rail.is_none() && wheel.is_none() {
-            return Ok(None);
-        }
-        let places = [("rail", rail.is_some()), ("wheel", wheel.is_some())]
-            .map(|(body, own)| if own { format!("{name}: {body}") } else { body.into() });
-        let data = [rail.as_ref().unwrap_or(&scene.rail), wheel.as_ref().unwrap_or(&scene.wheel)];
-        let places = places.each_ref().map(String::as_str);
-        of_side(scene, data, places, sources).map(Some)
-    };
-    let (right, left) = (own("right", &scene.right)?, own("left", &scene.left)?);
-    match (right, left) {
-        (Some(right), Some(left)) => Ok(Profiles { right, left: Some(left) }),
-        (Some(right), None) => Ok(Profiles { right, left: Some(both()?) }),
-        (None, left) => Ok(Profiles { right: both()?, left }),
-    }
-}
-
-/// Gives rail and wheel of one side of a scene; `places` are their keys.
-fn of_side(
-    scene: &Scene,
-    data: [&ProfileData; 2],
-    places: [&str; 2],
-    sources: Sources<'_>,
-) -> Result<SideProfiles> {
-    let rail = rail_of(data[0], places[0], sources)?;
-    let (wheel, radius) = wheel_of(scene, data[1], places[1], sources)?;
-    let pair = pair_of(scene, rail.profile, wheel.profile, radius)?;
-    Ok(SideProfiles { pair, measured: Bodies { rail: rail.measured, wheel: wheel.measured } })
-}
 
 /// Joins a rail, or the roller of a scene that has one, and a wheel with its nominal rolling radius \[mm\].
 ///

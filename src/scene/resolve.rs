@@ -8,8 +8,9 @@ use super::axes::asked_axes;
 use super::data::{MaterialData, PatchData, Scene};
 use super::doubts::doubts;
 use super::motion::{friction, motion};
-use super::profiles::{Given, profiles};
+use super::profiles::Given;
 use super::side_data::SideData;
+use super::sides::profiles;
 use super::standing::standing;
 use crate::case::{
     ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, Landmarks, OutputFormat, Outputs, Profiles,
@@ -20,7 +21,7 @@ use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
 use crate::mesh::checked_size;
 use crate::numerics::bodies::Bodies;
-use crate::placement::on_roller;
+use crate::placement::{on_roller, on_varying_rail};
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -66,6 +67,14 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     }
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
+    if profiles.varies() && question.motion.is_some() {
+        return Err(on_varying_rail());
+    }
+    if profiles.varies() && axes.reference == Reference::Rail {
+        let expected = "grid.reference = \"plane\": the conformal reference is of extruded rails";
+        let advice = "leave it out";
+        return Err(Error::new("grid: reference", "\"rail\" on a rail that varies", expected, advice));
+    }
     let of = |own: &SideProfiles| Landmarks::new(&own.pair);
     let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles, &landmarks));

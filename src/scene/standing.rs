@@ -6,11 +6,13 @@ use nalgebra::UnitComplex;
 
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use super::side_data::{DeviationData, SideData};
-use crate::case::{Place, Profiles, Standing};
+use crate::case::{Place, Profiles, SideProfiles, Standing};
 use crate::error::{Error, Result, finite, given};
 use crate::measured::Unit;
-use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
-use crate::search::{Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle};
+use crate::placement::{RailDistance, Track, WheelDistance, Wheelset};
+use crate::search::{
+    LoftedPair, Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle,
+};
 
 /// Depth \[mm\] below the top of rail at which the gauge is measured, if the scene gives no other.
 const GAUGE_HEIGHT: f64 = 14.0;
@@ -28,7 +30,7 @@ pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standin
                     return Err(Error::new(side, "a side beside [contact]", expected, "remove it"));
                 }
             }
-            single(contact, &profiles.right.pair)
+            single(contact, &profiles.right, scene.along()?)
         }
         (None, Some(track), Some(wheelset)) => on_track(scene, track, wheelset, &mut profiles),
         (None, None, None) => {
@@ -63,17 +65,24 @@ fn on_track(
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
     let deviations = [&scene.left, &scene.right].map(deviation);
+    let along = scene.along()?;
+    without_effect("wheelset: along", along, profiles.varies())?;
     let system = if profiles.left.is_none() && deviations == [None, None] {
-        WheelsetOnTrack::new(&profiles.right.pair, rails, wheels)?
+        WheelsetOnTrack::symmetrical(side(
+            &mut profiles.right,
+            (rails, wheels),
+            DeviationData::default(),
+            1.0,
+        )?)
     } else {
         let left = profiles.left.get_or_insert_with(|| profiles.right.clone());
-        let own = |pair: &mut Pair, deviation: Option<DeviationData>, name: &str, sign: f64| {
-            let side = side(pair, (rails, wheels), deviation.unwrap_or_default(), sign);
+        let own = |own: &mut SideProfiles, deviation: Option<DeviationData>, name: &str, sign: f64| {
+            let side = side(own, (rails, wheels), deviation.unwrap_or_default(), sign);
             side.map_err(|error| error.within(name))
         };
         let [off_left, off_right] = deviations;
-        let left = own(&mut left.pair, off_left, "left", -1.0)?;
-        WheelsetOnTrack::of_sides(left, own(&mut profiles.right.pair, off_right, "right", 1.0)?)
+        let left = own(left, off_left, "left", -1.0)?;
+        WheelsetOnTrack::of_sides(left, own(&mut profiles.right, off_right, "right", 1.0)?)
     };
     let roll_by_load = wheelset.roll == RollData::Word(RollWord::Load);
     let of_side = |side: &Option<SideData>| side.as_ref().is_some_and(|side| side.load.is_some());
@@ -89,7 +98,13 @@ fn on_track(
             "give one, or another roll",
         ));
     }
-    Ok(Standing { place: Place::Wheelset { system: Arc::new(system), position }, within, roll_by_load })
+    let along = along.unwrap_or(0.0);
+    Ok(Standing {
+        place: Place::Wheelset { system: Arc::new(system), position },
+        within,
+        roll_by_load,
+        along,
+    })
 }
 
 /// Reads the position of a wheelset.
@@ -103,27 +118,54 @@ pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
 
 /// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
 fn side(
-    pair: &mut Pair,
+    SideProfiles { pair, loft, .. }: &mut SideProfiles,
     (rails, wheels): (RailDistance, WheelDistance),
     deviation: DeviationData,
     sign: f64,
 ) -> Result<SideOnTrack> {
     let within = |error: Error| error.within("deviation");
-    let nominal = Track::new(pair.rail(), rails)?;
+    let axle = Wheelset::new(wheels, pair.wheel_radius())?;
+    let nominal = match (&loft, rails) {
+        (None, _) => Track::new(pair.rail(), rails)?,
+        (Some(_), RailDistance::Spacing(spacing)) => Track::between_origins(spacing)?,
+        (Some(_), RailDistance::Gauge { .. }) => {
+            let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
+            return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
+        }
+    };
     let track = nominal.moved(sign * deviation.lateral, deviation.vertical).map_err(within)?;
     let roll = small_angle("roll", deviation.roll).map_err(within)?;
+    if let Some(loft) = loft {
+        if roll != 0.0 {
+            let expected = "lateral and vertical deviations of rails that vary along the track";
+            return Err(Error::new("deviation: roll", "a roll", expected, "turn the slices by `rotate`"));
+        }
+        let pair = LoftedPair::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius())?;
+        return Ok(SideOnTrack::lofted(Arc::new(pair), track, axle));
+    }
     if roll != 0.0 {
         // Profiles turn counter-clockwise, and the right-hand side's roll is clockwise.
         let rail = pair.rail().clone().rotated(UnitComplex::new(-sign * roll));
         *pair = pair.with_rail(rail)?;
     }
-    SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)
+    SideOnTrack::new(pair, track, axle)
 }
 
-fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
+fn single(contact: &ContactData, profiles: &SideProfiles, along: Option<f64>) -> Result<Standing> {
     let in_table = |error: Error| error.within("contact");
+    let SideProfiles { pair, loft, .. } = profiles;
+    without_effect("contact: along", along, loft.is_some())?;
     let within = within(contact.within).map_err(in_table)?;
     let place = match (contact.rail_x, contact.wheel_x, contact.offset) {
+        (Some(_), ..) if loft.is_some() => {
+            let expected = "`offset` with perhaps `roll` and `yaw`, on a rail that varies along the track";
+            return Err(Error::new(
+                "contact: rail_x",
+                "a chosen point",
+                expected,
+                "let the wheel be lowered",
+            ));
+        }
         (Some(rail_x), Some(wheel_x), None) if contact.roll.is_none() && contact.yaw.is_none() => {
             Place::Points {
                 rail_x: finite("rail_x", rail_x).map_err(in_table)?,
@@ -132,7 +174,14 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
         }
         (None, None, Some(offset)) => {
             let pose = Pose::new(offset, contact.yaw.unwrap_or(0.0), contact.roll.unwrap_or(0.0));
-            Place::Wheel { pose: pose.map_err(in_table)?, profiles: Arc::new(ProfilePair::new(pair)?) }
+            let pose = pose.map_err(in_table)?;
+            match loft {
+                Some(loft) => {
+                    let pair = LoftedPair::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius())?;
+                    Place::OnSlices { pose, pair: Arc::new(pair) }
+                }
+                None => Place::Wheel { pose, profiles: Arc::new(ProfilePair::new(pair)?) },
+            }
         }
         _ => {
             let expected = "either `rail_x` and `wheel_x`, or `offset` with perhaps `roll` and `yaw`";
@@ -146,7 +195,16 @@ fn single(contact: &ContactData, pair: &Pair) -> Result<Standing> {
             return Err(Error::new("contact", found, expected, "keep one of the two forms"));
         }
     };
-    Ok(Standing { place, within, roll_by_load: false })
+    Ok(Standing { place, within, roll_by_load: false, along: along.unwrap_or(0.0) })
+}
+
+/// Refuses a place along rails of one profile each.
+fn without_effect(key: &str, along: Option<f64>, varies: bool) -> Result<()> {
+    if along.is_none() || varies {
+        return Ok(());
+    }
+    let expected = "a place along a rail that varies: a list .slcs of slices without its own `along`";
+    Err(Error::new(key, "a place without effect", expected, "remove it"))
 }
 
 /// Returns the largest gap of a near miss \[mm\], 0 if none is given.

@@ -1,5 +1,7 @@
 //! Single wheels: finds where a wheel touches its rail, and how far it can be lowered.
 
+use std::sync::Arc;
+
 use nalgebra::{Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +11,7 @@ use super::locus::Attitude;
 use super::over_rail::{RailSearch, SearchPair, Work};
 use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, Result, finite};
+use crate::lofted::{FramedLoft, Loft};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 
@@ -166,6 +169,11 @@ impl Pose {
         Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
     }
 
+    /// The attitude of a wheel of this nominal rolling radius \[mm\].
+    pub(super) fn attitude(&self, radius: f64) -> Attitude {
+        Attitude::new(self.offset, self.yaw, self.roll, radius)
+    }
+
     /// Returns the roll \[rad\].
     pub fn roll(&self) -> f64 {
         self.roll
@@ -201,7 +209,7 @@ impl ContactSearch<'_> {
     /// first search has no place to start from and costs some times more.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     pub fn touch(&mut self, pose: &Pose, selection: &Selection) -> Option<Touch<'_>> {
-        let attitude = Attitude::new(pose.offset, pose.yaw, pose.roll, self.over_rail.pair.radius);
+        let attitude = pose.attitude(self.over_rail.pair.radius);
         let height = -self.lower(&attitude, selection.within)?.gap;
         Some(self.collect(&attitude, height, selection))
     }
@@ -306,6 +314,31 @@ impl Contact {
             self.skew,
         )?;
         Ok(placed.turned(self.turn))
+    }
+
+    /// Places a wheel in contact here with a rail that varies along the track. `pair` is any pair of this wheel; `from` is the
+    /// coordinate \[mm\] in the list of slices that [`Self::y`] counts from.
+    ///
+    /// The contact frame's ξ lies in the section across the track, and its ζ leans ahead by [`Self::turn`]. The rail's profile is the
+    /// section through C.
+    ///
+    /// # Errors
+    /// A contact of another rail, which has no surface here.
+    pub fn placed_on(&self, pair: &Pair, loft: &Arc<Loft>, from: f64) -> Result<Placement> {
+        let nowhere = || {
+            let expected = "a place of contact on this rail";
+            Error::new("contact", "no surface of the rail there", expected, "take the rail that was searched")
+        };
+        let origin = [self.rail_x, self.y + from, self.rail_z];
+        let framed = FramedLoft::new(Arc::clone(loft), origin, self.contact_angle, self.turn)?;
+        let foot = framed.foot(0.0, 0.0, None).ok_or_else(nowhere)?;
+        let [first, last] = loft.strips[foot.strip].reach();
+        let section = loft.section(foot.strip, origin[1].clamp(first, last))?;
+        let pair = pair.with_rail(section)?;
+        // At the end of a part the section may end a rounding before.
+        let [low, high] = pair.sections()[0].reach().ok_or_else(nowhere)?;
+        let here = Self { rail_x: self.rail_x.clamp(low, high), ..*self };
+        Ok(here.placed(&pair)?.over_loft(Arc::new(framed)))
     }
 }
 

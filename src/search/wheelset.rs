@@ -81,6 +81,13 @@ impl WheelsetOnTrack {
         &self.sides[0]
     }
 
+    /// Returns the coordinate \[mm\] along the track that [`Contact::y`](super::Contact::y) of a side counts from, when the middle of the
+    /// axle is at `along`: that of the wheel profile's origin.
+    pub fn along(&self, right: bool, position: &Position, along: f64) -> f64 {
+        let side = usize::from(right);
+        along + SIGNS[side] * position.yaw.sin() * self.sides[side].wheelset.wheel_x
+    }
+
     /// Returns whether both rails have one profile along the whole track and are no rollers.
     pub(crate) fn on_plain_rails(&self) -> bool {
         self.sides.iter().all(|side| matches!(side.pair, SidePair::Swept(_)) && side.pair.roller().is_none())

@@ -17,6 +17,7 @@ use super::methods::report_newton::ReportNewton;
 use super::methods::spectral::Spectral;
 use super::relief::Relief;
 use super::values::Residence;
+use crate::lofted::FramedLoft;
 use crate::numerics::lanes::MANY;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
@@ -97,9 +98,13 @@ impl Choice {
             Method::Quadratic => &|| Box::new(Quadratic::new(placement, axis)),
             Method::ConstantRadius => &|| {
                 let radii = [placement.wheel(), placement.rail()].map(|body| body.generator().radius());
-                summed(placement, |k, relief| Box::new(Parabolic::constant_radius(relief, radii[k], axis)))
+                summed(placement, axis, |k, relief| {
+                    Box::new(Parabolic::constant_radius(relief, radii[k], axis))
+                })
             },
-            Method::Parabolic => &|| summed(placement, |_, relief| Box::new(Parabolic::local(relief, axis))),
+            Method::Parabolic => {
+                &|| summed(placement, axis, |_, relief| Box::new(Parabolic::local(relief, axis)))
+            }
             Method::Spectral => {
                 let strips = |relief| strips(&mut self.fitter(relief), xi, axis.reach * axis.reach);
                 let strips: Vec<_> = Relief::all(placement).map(strips).collect();
@@ -133,7 +138,7 @@ impl Choice {
         let of_strips: f64 = strips.iter().map(largest).sum();
         let residence = Residence::of(out.len());
         let kernel = || {
-            summed(placement, |k, relief| {
+            summed(placement, axis, |k, relief| {
                 Box::new(Spectral::new(self.fitter(relief), axis, &strips[k], residence))
             })
         };
@@ -151,12 +156,45 @@ impl Choice {
 /// Makes the kernel of a pair from those of its reliefs; `make` gets the number of the relief.
 fn summed<'a>(
     placement: &'a Placement,
+    axis: &'a EtaAxis,
     make: impl Fn(usize, Relief<'a>) -> Box<dyn Kernel + 'a>,
 ) -> Box<dyn Kernel + 'a> {
     let wheel = make(0, Relief::new(placement));
+    if let Some(rail) = placement.lofted() {
+        return Box::new(OverLoft { wheel, rail, axis, heights: Vec::new() });
+    }
     match placement.under() {
         Some(under) => Box::new(Sum { wheel, roller: make(1, Relief::new(under)), falls: Vec::new() }),
         None => wheel,
+    }
+}
+
+/// The relief of a wheel over the tangent plane, less the height of a rail that varies along the track.
+struct OverLoft<'a> {
+    wheel: Box<dyn Kernel + 'a>,
+    rail: &'a FramedLoft,
+    axis: &'a EtaAxis,
+    /// Heights of the rail along a column \[mm\].
+    heights: Vec<f64>,
+}
+
+impl Kernel for OverLoft<'_> {
+    fn column(&mut self, xi: f64, out: &mut [f64]) {
+        self.columns(&[xi], out);
+    }
+
+    fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
+        let eta = &self.axis.eta;
+        self.heights.resize(eta.len(), f64::NAN);
+        self.wheel.columns(xi, out);
+        for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(eta.len())) {
+            self.rail.column(xi, eta, &mut self.heights);
+            out.iter_mut().zip(&self.heights).for_each(|(s, below)| *s -= below);
+        }
+    }
+
+    fn truncation(&self) -> f64 {
+        self.wheel.truncation()
     }
 }
 

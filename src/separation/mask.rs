@@ -18,7 +18,8 @@ const NEAREST_TO_AXLE: f64 = 0.5;
 /// It is decided from the extents of the profiles and the largest sagitta of the grid, so that a grid that ends close to the
 /// end of a profile may count as not covered.
 pub fn covered(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> bool {
-    Relief::all(placement).all(|relief| covers(&relief, xi, axis))
+    // Nobody knows beforehand where a rail that varies has a surface.
+    placement.lofted().is_none() && Relief::all(placement).all(|relief| covers(&relief, xi, axis))
 }
 
 /// Returns whether a relief has a value over the whole grid, without a step of its wheel.

@@ -4,6 +4,7 @@ use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
 
 use super::gap;
 use super::wheel_surface::{SagittaPoint, Span, Surface};
+use crate::lofted::FramedLoft;
 use crate::placement::Placement;
 use crate::profile::Section;
 
@@ -50,7 +51,8 @@ impl<'a> Relief<'a> {
     /// Makes the relief of the wheel of a placed pair over the profile of its rail.
     pub fn new(placement: &'a Placement) -> Self {
         Self {
-            below: &placement.rail().section,
+            // Of a rail that varies, the height over its tangent plane is known apart.
+            below: placement.lofted().map_or(&placement.rail().section, FramedLoft::plane),
             wheel: Surface::new(placement),
             spans: Vec::with_capacity(4),
             skew: placement.skew_rotation(),

@@ -19,9 +19,9 @@ use super::campaign::scenes;
 
 /// Distance of the profile origins \[mm\].
 const SPACING: f64 = 1500.0;
-const RADIUS: f64 = 460.0;
+pub(super) const RADIUS: f64 = 460.0;
 
-fn slices(at: &[f64], profile: impl Fn(f64) -> Profile) -> Vec<Slice> {
+pub(super) fn slices(at: &[f64], profile: impl Fn(f64) -> Profile) -> Vec<Slice> {
     let slice = |&at: &f64| Slice {
         at,
         name: format!("at {at}"),
@@ -33,7 +33,7 @@ fn slices(at: &[f64], profile: impl Fn(f64) -> Profile) -> Vec<Slice> {
 }
 
 /// A march over the same lofted rail on both sides.
-fn march_over(slices: &[Slice], wheel: Profile, position: Position, within: f64) -> Result<March> {
+pub(super) fn march_over(slices: &[Slice], wheel: Profile, position: Position, within: f64) -> Result<March> {
     let loft = Arc::new(Loft::new(slices, Joining::Monotone)?);
     let reach = loft.reach();
     let pair = Arc::new(LoftedPair::new(loft, &wheel, RADIUS)?);
@@ -43,11 +43,11 @@ fn march_over(slices: &[Slice], wheel: Profile, position: Position, within: f64)
     Ok(March { system: WheelsetOnTrack::symmetrical(side), position, selection, reach, pitch: 0.0 })
 }
 
-fn position(lateral: f64, yaw: f64, roll: f64) -> Position {
+pub(super) fn position(lateral: f64, yaw: f64, roll: f64) -> Position {
     Position { lateral, yaw, roll: Roll::Fixed(roll) }
 }
 
-fn right(march: &March, along: f64) -> Contact {
+pub(super) fn right(march: &March, along: f64) -> Contact {
     *march.at(along).unwrap().of(TrackSide::Right).next().unwrap_or_else(|| panic!("no contact at {along}"))
 }
 
@@ -124,7 +124,7 @@ fn equal_slices(wheel: Profile) -> Result<()> {
 }
 
 /// The crossing of the examples, and its march.
-fn crossing() -> March {
+pub(super) fn crossing() -> March {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
     scene::march(&scene::load(&folder.join("crossing.toml")).unwrap(), &folder).unwrap().0
 }

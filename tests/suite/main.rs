@@ -33,6 +33,7 @@ mod loads;
 mod measured_scene;
 mod mesh;
 mod motion;
+mod over_slices;
 mod parts;
 mod polynomial_patches;
 mod practice;

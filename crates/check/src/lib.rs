@@ -11,6 +11,7 @@ mod body;
 mod closest;
 mod compare;
 mod floor;
+mod lofted;
 mod meshes;
 mod normal_gap;
 mod patch;
@@ -24,6 +25,7 @@ mod site;
 
 pub use compare::check;
 pub use floor::Floor;
+pub use lofted::LoftedReport;
 pub use normal_gap::{NormalGapReport, NormalGapSample, check_normal_gap};
 pub use relation::RELATION;
 pub use report::{Counts, Differences, Distances, Orders, Report};

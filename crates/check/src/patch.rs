@@ -34,14 +34,8 @@ impl CurveMesh {
 
     /// Returns the parameters of a hit.
     pub fn place(&self, hit: &Hit) -> SurfacePoint {
-        let columns = self.v.len() - 1;
-        let (cell, second) = (hit.triangle / 2, hit.triangle % 2);
-        let (i, j) = (cell / columns, cell % columns);
-        let [_, b, c] = hit.weights;
-        // Corners (0,0), (1,0), (1,1) or (0,0), (1,1), (0,1).
-        let (a, across) = if second == 0 { (b + c, c) } else { (b, b + c) };
-        let between = |x: &[f64], k: usize, share: f64| x[k] + (x[k + 1] - x[k]) * share;
-        SurfacePoint { curve: self.curve, t: between(&self.t, i, a), v: between(&self.v, j, across) }
+        let [t, v] = parameters([&self.t, &self.v], hit);
+        SurfacePoint { curve: self.curve, t, v }
     }
 
     /// Returns whether a place is in the outer ring of cells, so that the true place may be outside; ends of
@@ -53,6 +47,18 @@ impl CurveMesh {
         };
         outer(&self.t, place.t, [0.0, length]) || outer(&self.v, place.v, [f64::NEG_INFINITY, f64::INFINITY])
     }
+}
+
+/// Returns the parameters of a hit on the cells over two ascending lists of them.
+pub(super) fn parameters([t, v]: [&[f64]; 2], hit: &Hit) -> [f64; 2] {
+    let columns = v.len() - 1;
+    let (cell, second) = (hit.triangle / 2, hit.triangle % 2);
+    let (i, j) = (cell / columns, cell % columns);
+    let [_, b, c] = hit.weights;
+    // Corners (0,0), (1,0), (1,1) or (0,0), (1,1), (0,1).
+    let (a, across) = if second == 0 { (b + c, c) } else { (b, b + c) };
+    let between = |x: &[f64], k: usize, share: f64| x[k] + (x[k + 1] - x[k]) * share;
+    [between(t, i, a), between(v, j, across)]
 }
 
 /// Returns the triangles of an n × m array of vertices, counter-clockwise in (t, v).

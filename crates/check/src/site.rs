@@ -9,6 +9,7 @@ use wheelrail::error::Result;
 use wheelrail::separation::Evaluator;
 
 use super::compare::check;
+use super::lofted::{LoftedReport, check_lofted};
 use super::normal_gap::{NormalGapReport, NormalGapSample, check_normal_gap};
 use super::report::Report;
 use super::request::{Answer, Request};
@@ -19,22 +20,27 @@ const SAMPLES: usize = 9;
 /// The result for a contact of a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct SiteReport {
-    /// s and the normals over the tangent plane.
-    pub plane: Report,
+    /// s and the normals over the tangent plane; `None` on a rail that varies along the track.
+    pub plane: Option<Report>,
     /// The normal gap; `None` for a grid over the tangent plane.
     pub rail: Option<NormalGapReport>,
+    /// s and the rail's normals on a rail that varies along the track; `None` on a swept one.
+    pub lofted: Option<LoftedReport>,
 }
 
 impl SiteReport {
     /// Returns whether all measurements agree.
     pub fn agrees(&self) -> bool {
-        self.plane.agrees && self.rail.as_ref().is_none_or(|rail| rail.agrees)
+        self.plane.as_ref().is_none_or(|plane| plane.agrees)
+            && self.rail.as_ref().is_none_or(|rail| rail.agrees)
+            && self.lofted.as_ref().is_none_or(|lofted| lofted.agrees)
     }
 }
 
 impl fmt::Display for SiteReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.plane)?;
+        self.plane.as_ref().map_or(Ok(()), |plane| write!(f, "{plane}"))?;
+        self.lofted.as_ref().map_or(Ok(()), |lofted| write!(f, "{lofted}"))?;
         self.rail.as_ref().map_or(Ok(()), |rail| write!(f, "{rail}"))
     }
 }
@@ -47,10 +53,15 @@ pub fn check_site(site: &Site) -> Result<SiteReport> {
     let placement = &site.contact.placement;
     let mut evaluator = Evaluator::new(placement);
     let request = Request { window: site.window(), approach: site.approach() };
-    let plane = check(placement, &request, &mut |xi, eta| Answer::of(&mut evaluator, xi, eta))?;
+    let mut answer = |xi: f64, eta: f64| Answer::of(&mut evaluator, xi, eta);
+    if let Some(lofted) = placement.lofted() {
+        let lofted = Some(check_lofted((placement, lofted), &request, &mut answer)?);
+        return Ok(SiteReport { plane: None, rail: None, lofted });
+    }
+    let plane = Some(check(placement, &request, &mut answer)?);
     let samples = normal_gaps(site);
     let rail = samples.map(|samples| check_normal_gap(placement, &samples)).transpose()?;
-    Ok(SiteReport { plane, rail })
+    Ok(SiteReport { plane, rail, lofted: None })
 }
 
 /// Gives normal gaps over the grid of a site, evenly spread; `None` for a grid over the tangent plane.

@@ -21,6 +21,7 @@ pub(super) fn midsep(path: &Path) -> Result<Outcome> {
     let found =
         scene::resolve(&scene, folder_of(path), "midsep").and_then(|case| Ok((contacts(&case)?, case)));
     let (contacts, case) = found.map_err(|error| error.within(path.display()))?;
+    case.profiles().swept("`wheelrail run` writes the separation over the whole grid")?;
     let tables = contacts.iter().map(|(name, placement)| {
         let xi = case.axes().xi.clone().unwrap_or_else(|| over(placement));
         let head = if contacts.len() > 1 { format!("# {name}\n") } else { String::new() };

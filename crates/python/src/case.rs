@@ -343,6 +343,7 @@ impl Case {
                 Error::new("sweep", "a single wheel", expected, "a sweep moves a wheelset over its track");
             return Err(exception(error));
         };
+        self.inner.case.profiles().swept("take `march`").or_raise()?;
         Ok((system, position))
     }
 

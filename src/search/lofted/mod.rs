@@ -19,7 +19,7 @@ use super::body::SearchBody;
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use super::over_rail::Work;
-use super::touch::{Contact, Selection, Touch};
+use super::touch::{Contact, Pose, Selection, Touch};
 use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftedWheel, Strip, SurfacePoint, turned};
 use crate::profile::{Profile, Section, Side, Station};
@@ -116,6 +116,36 @@ impl LoftedPair {
     /// A wheel profile with no part that faces the rail.
     pub fn new(loft: Arc<Loft>, wheel: &Profile, radius: f64) -> Result<Self> {
         Self::of(loft, Varying::Rail, wheel, [radius, 0.0])
+    }
+
+    /// The rail's surface.
+    pub fn loft(&self) -> &Arc<Loft> {
+        &self.loft
+    }
+
+    /// Lowers a single wheel, whose profile's origin stands at `along` \[mm\] of the list, until it touches: the height \[mm\] of that origin
+    /// over the slices' one, and the contacts of the selection, the lowest first. `None` if no part of it is over the rail.
+    ///
+    /// # Errors
+    /// A rail that follows the wheel's shape all over.
+    pub fn touch(
+        &self,
+        pose: &Pose,
+        along: f64,
+        selection: &Selection,
+    ) -> Result<Option<(f64, Vec<Contact>)>> {
+        let mut search = self.search();
+        search.stand_at(along, 0.0);
+        let attitude = pose.attitude(self.radius);
+        let lowest = search.lower(&attitude, selection.within);
+        if search.gave_up {
+            let expected = "slices over which a wheel touches at places, not all over";
+            return Err(Error::new("rail", "too many places", expected, "check the slices and the wheel"));
+        }
+        Ok(lowest.map(|lowest| {
+            let touch = search.collect(&attitude, -lowest.gap, selection);
+            (touch.height, touch.contacts.to_vec())
+        }))
     }
 
     /// Prepares a wheel that varies and a rail of one profile.

@@ -34,6 +34,11 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     let curvatures = [curvature(&placement.rail().section), curvature(&placement.wheel().section)];
     let around = |body: &Body| body.section.frame.cos / body.axle_distance();
     let [along, mixed, across] = form(curvatures, around(placement.wheel()), placement.skew());
+    if let Some(lofted) = placement.lofted() {
+        let [xx, xy, yy] = lofted.bends().unwrap_or([f64::NAN; 3]);
+        let [own, mixed, across] = form([0.0, curvatures[1]], around(placement.wheel()), placement.skew());
+        return [own - xx / 2.0, mixed - xy, across - yy / 2.0];
+    }
     let across = across + around(placement.rail()) / 2.0;
     match gap::relative_curvature(placement) {
         Some(relative) if placement.skew() == 0.0 => [relative / 2.0, mixed, across],

@@ -35,6 +35,9 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
     if placement.under().is_some() {
         return Some("a roller");
     }
+    if placement.lofted().is_some() {
+        return Some("a rail that varies along the track");
+    }
     let segments = placement.wheel().profile().segments().iter();
     let unknown = |shape| Printed::of(shape, &Station::AXES).is_none();
     segments.map(|segment| &segment.shape).any(unknown).then_some("a wheel of parametric curves")
@@ -154,7 +157,7 @@ impl<'a> ReportNewton<'a> {
 impl Kernel for ReportNewton<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         let rail = self.rail_height(xi);
-        if self.placement.under().is_some() {
+        if self.placement.under().is_some() || self.placement.lofted().is_some() {
             return out.fill(f64::NAN);
         }
         let guess = self.placement.wheel().section.height(xi);

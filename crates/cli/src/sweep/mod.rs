@@ -178,5 +178,6 @@ fn wheelset(case: &Case) -> Result<(&Arc<WheelsetOnTrack>, Position)> {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a sweep moves a wheelset over its track"));
     };
+    case.profiles().swept("take `wheelrail march`")?;
     Ok((system, *position))
 }

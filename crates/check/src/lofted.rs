@@ -1,0 +1,278 @@
+//! The check of a rail that varies along the track: its surface and the wheel's as triangle meshes, measured by rays along ζ.
+//!
+//! The rail's meshes are made of points of its strips, in a frame that is set up here from the angles of the contact. A ray meets a
+//! coarse mesh first, and then meshes of nine cells around that place, each smaller than the one before.
+
+use std::fmt;
+use std::time::Instant;
+
+use serde::Serialize;
+use wheelrail::error::{Error, Result};
+use wheelrail::lofted::{FramedLoft, Strip};
+use wheelrail::placement::Placement;
+
+use super::body::{AlongZeta, FLANGEWAY, STEEPEST, Solid};
+use super::meshes::{Mesh, RayOrigin, Vector};
+use super::patch::{cells, parameters};
+use super::ray::extrapolated;
+use super::report::Differences;
+use super::request::{Answer, Request};
+use super::sampler::SampledSurface;
+
+/// Numbers of lines of points in ξ and η, with the edges of the window; a prime to the cells, so that few lie on their sides.
+const GRID: [usize; 2] = [17, 13];
+
+/// Cells of the coarse mesh: one across, and this many mm along the track.
+const ALONG: f64 = 1.0;
+
+/// Margin of the coarse mesh around the window \[mm\].
+const MARGIN: f64 = 2.0;
+
+/// Most points of the coarse mesh.
+const MOST_POINTS: usize = 2_000_000;
+
+/// First and last cell of the meshes around a place, as a share of a coarse one. The last chords are off by less than 1e-12 mm.
+const CELLS: [f64; 2] = [0.5, 1e-5];
+
+/// Factor from one of these meshes to the next.
+const CLOSER: f64 = 0.125;
+
+/// Cell whose diagonals give the normal, as a share of a coarse one.
+const NORMAL_CELL: f64 = 1.0 / 64.0;
+
+/// Largest difference that counts as agreement, as a multiple of the checker's own estimate.
+const SAFETY: f64 = 4.0;
+
+/// Rounding of a height, per millimetre of the largest coordinate.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+/// What rays on meshes found of a contact with a rail that varies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoftedReport {
+    /// Whether all values agree.
+    pub agrees: bool,
+    /// Numbers of rays.
+    pub points: usize,
+    /// Points where neither program nor meshes have both surfaces.
+    pub no_surface: usize,
+    /// Points at the end of a part, or where a surface is too steep to measure.
+    pub steep_or_end: usize,
+    /// Points where only one of both finds both surfaces: a disagreement.
+    pub surface_disputed: usize,
+    /// Differences |s − s by rays| \[mm\].
+    pub separation: Differences,
+    /// Differences of the rail's unit normals.
+    pub normals: Differences,
+    /// Time of the check \[s\].
+    pub seconds: f64,
+}
+
+impl fmt::Display for LoftedReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.agrees { "agrees" } else { "DISAGREES" };
+        writeln!(
+            f,
+            "{verdict} with triangle meshes of rail and wheel measured by parry3d, {:.2} s",
+            self.seconds
+        )?;
+        writeln!(
+            f,
+            "  points: {} of {} compared; {} without a surface, {} at an end or steep, {} where only one of both finds one",
+            self.separation.compared, self.points, self.no_surface, self.steep_or_end, self.surface_disputed
+        )?;
+        for (name, unit, found) in
+            [("|s - s by rays|", " mm", &self.separation), ("|n - n of the meshes|", "", &self.normals)]
+        {
+            let [xi, eta] = found.worst_at_mm;
+            writeln!(
+                f,
+                "  {name:<22} largest {:.1e}, half up to {:.1e}{unit}; nearest to its limit: {:.1e} of {:.1e} at ξ = {xi:.4}, η = {eta:.4} mm",
+                found.max, found.median, found.worst, found.allowed
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Checks the separation and the rail's normals of a contact with a rail that varies along the track.
+///
+/// Cost: about a second.
+///
+/// # Errors
+/// A window that is not finite, or too wide.
+pub(super) fn check_lofted(
+    (placement, lofted): (&Placement, &FramedLoft),
+    request: &Request,
+    answer: &mut dyn FnMut(f64, f64) -> Answer,
+) -> Result<LoftedReport> {
+    let start = Instant::now();
+    let Request { window, .. } = request;
+    let reach = window.xi.into_iter().chain(window.eta).map(f64::abs).fold(0.0, f64::max);
+    let bad = || Error::new("check", "a window without finite points", "a finite window", "check the grid");
+    let rail = MeshedRail::new(lofted, placement, request)?;
+    let wheel = Some(SampledSurface::wheel(placement)).filter(|_| reach.is_finite());
+    let wheel = wheel.and_then(|surface| Solid::new(surface, 2.0 * reach)).ok_or_else(bad)?;
+    let (mut separation, mut normals) = (Vec::new(), Vec::new());
+    let [mut no_surface, mut steep_or_end, mut surface_disputed] = [0; 3];
+    let place = |[from, to]: [f64; 2], k: usize, n: usize| from + (to - from) * k as f64 / (n - 1) as f64;
+    for k in 0..GRID[0] * GRID[1] {
+        let at = [place(window.xi, k / GRID[1], GRID[0]), place(window.eta, k % GRID[1], GRID[1])];
+        let found = answer(at[0], at[1]);
+        let (below, above) = (rail.met(at, found, &wheel), wheel.along_zeta(at[0], at[1]));
+        match (below, above) {
+            (Below::Steep, _) | (_, AlongZeta::Steep | AlongZeta::Unresolved) => steep_or_end += 1,
+            (Below::Nothing, _) | (_, AlongZeta::Nothing) if found.separation.is_nan() => no_surface += 1,
+            (Below::Nothing, _) | (_, AlongZeta::Nothing) => surface_disputed += 1,
+            _ if found.separation.is_nan() => surface_disputed += 1,
+            (Below::At { zeta, normal, normal_error }, AlongZeta::Heights(heights)) => {
+                let error = heights.iter().map(|h| h.error).fold(0.0, f64::max);
+                let allowed = SAFETY * error + ROUNDINGS * rail.size / normal.z.min(heights[0].normal.z);
+                separation.push(((found.separation - (heights[0].zeta - zeta)).abs(), allowed, at));
+                let own =
+                    found.normals.rail.map_or(Vector::NAN, |n| Vector::from_array(n.into_inner().into()));
+                let rounding = ROUNDINGS * rail.size / NORMAL_CELL;
+                normals.push((own.distance(normal), SAFETY * normal_error + rounding, at));
+            }
+        }
+    }
+    let (separation, normals) = (Differences::of(&separation), Differences::of(&normals));
+    let agrees = separation.within() && normals.within() && surface_disputed == 0;
+    Ok(LoftedReport {
+        agrees,
+        points: GRID[0] * GRID[1],
+        no_surface,
+        steep_or_end,
+        surface_disputed,
+        separation,
+        normals,
+        seconds: start.elapsed().as_secs_f64(),
+    })
+}
+
+/// What a ray finds of the rail.
+enum Below {
+    At { zeta: f64, normal: Vector, normal_error: f64 },
+    Nothing,
+    Steep,
+}
+
+/// The rail's strips as coarse meshes around the window.
+struct MeshedRail<'a> {
+    lofted: &'a FramedLoft,
+    /// ξ, η, ζ in the axes of the slices.
+    axes: [Vector; 3],
+    meshes: Vec<MeshedStrip>,
+    /// Largest coordinate \[mm\].
+    size: f64,
+}
+
+struct MeshedStrip {
+    strip: usize,
+    mesh: Mesh,
+    u: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl<'a> MeshedRail<'a> {
+    fn new(lofted: &'a FramedLoft, placement: &Placement, request: &Request) -> Result<Self> {
+        let ((sin, cos), (rise, run)) =
+            (placement.rail().contact_angle().sin_cos(), placement.turn().sin_cos());
+        let (xi, zeta) = (Vector::new(cos, 0.0, sin), Vector::new(-sin * run, rise, cos * run));
+        let [x, y, z] = lofted.origin();
+        let size = placement.rail().profile().extent() + x.abs() + y.abs() + z.abs();
+        let mut rail = Self { lofted, axes: [xi, zeta.cross(xi), zeta], meshes: Vec::new(), size };
+        let window = request.window;
+        for (strip, own) in lofted.loft().strips.iter().enumerate() {
+            let [first, last] = own.reach();
+            let [from, to] =
+                [window.eta[0] - MARGIN, window.eta[1] + MARGIN].map(|eta| (y + eta).clamp(first, last));
+            if from >= to {
+                continue;
+            }
+            let steps = ((to - from) / ALONG).ceil();
+            let y: Vec<f64> = (0..=steps as usize).map(|k| from + (to - from) * k as f64 / steps).collect();
+            let u: Vec<f64> = (0..=own.cells()).map(|k| k as f64).collect();
+            if u.len() * y.len() > MOST_POINTS {
+                let (found, expected) = (u.len() * y.len(), format!("at most {MOST_POINTS} points"));
+                return Err(Error::new(
+                    "check",
+                    format!("{found} points"),
+                    expected,
+                    "take a smaller window",
+                ));
+            }
+            let points = u.iter().flat_map(|&u| y.iter().map(move |&y| (u, y)));
+            let points: Vec<Vector> = points.map(|(u, y)| rail.point(own, u, y)).collect();
+            let faces = cells(u.len(), y.len());
+            let not_finite =
+                || Error::new("check", "points that are not finite", "finite points", "check the list");
+            let mesh = Mesh::new(points, faces).ok_or_else(not_finite)?;
+            rail.meshes.push(MeshedStrip { strip, mesh, u, y });
+        }
+        Ok(rail)
+    }
+
+    fn point(&self, strip: &Strip, u: f64, y: f64) -> Vector {
+        let [x, z] = strip.point(u, y).at;
+        let [cx, cy, cz] = self.lofted.origin();
+        let from = Vector::new(x - cx, y - cy, z - cz);
+        Vector::new(from.dot(self.axes[0]), from.dot(self.axes[1]), from.dot(self.axes[2]))
+    }
+
+    /// Measures the sheet that a line meets first from above; where that is so much nearer to the wheel than the program's answer that it
+    /// may be another head, the one behind.
+    fn met(&self, at: [f64; 2], found: Answer, wheel: &Solid) -> Below {
+        let first = self.ray(at, RayOrigin::Above);
+        let (Below::At { zeta, .. }, AlongZeta::Heights(heights)) = (&first, wheel.along_zeta(at[0], at[1]))
+        else {
+            return first;
+        };
+        let far = (found.separation - (heights[0].zeta - zeta)).abs() > FLANGEWAY / 2.0;
+        if far { self.ray(at, RayOrigin::DownFrom(zeta - FLANGEWAY)) } else { first }
+    }
+
+    fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> Below {
+        let met = self.meshes.iter().filter_map(|own| Some((own, own.mesh.along_zeta(xi, eta, origin)?)));
+        let Some((own, hit)) = met.max_by(|a, b| a.1.point.z.total_cmp(&b.1.point.z)) else {
+            return Below::Nothing;
+        };
+        if own.mesh.normal(hit.triangle).z < STEEPEST {
+            return Below::Steep;
+        }
+        let strip = &self.lofted.loft().strips[own.strip];
+        let mut place = parameters([&own.u, &own.y], &hit);
+        let (mut share, mut zeta) = (CELLS[0], hit.point.z);
+        while share >= CELLS[1] {
+            let nodes = |at: f64, cell: f64| -> Vec<f64> {
+                // Off every symmetry, so that the ray meets no side.
+                (0..4).map(|k| at + (f64::from(k) - 1.43) * share * cell).collect()
+            };
+            let (u, y) = (nodes(place[0], 1.0), nodes(place[1], ALONG));
+            let points = u.iter().flat_map(|&u| y.iter().map(move |&y| (u, y)));
+            let points = points.map(|(u, y)| self.point(strip, u, y)).collect();
+            let mesh = Mesh::new(points, cells(4, 4));
+            let Some((mesh, hit)) =
+                mesh.and_then(|mesh| mesh.along_zeta(xi, eta, RayOrigin::Above).map(|hit| (mesh, hit)))
+            else {
+                return Below::Steep;
+            };
+            if mesh.normal(hit.triangle).z < STEEPEST {
+                return Below::Steep;
+            }
+            (place, zeta) = (parameters([&u, &y], &hit), hit.point.z);
+            share *= CLOSER;
+        }
+        let [first, last] = strip.reach();
+        let inside = |at: f64, [from, to]: [f64; 2], least: f64| at > from + least && at < to - least;
+        let own = inside(place[0], [0.0, strip.cells() as f64], NORMAL_CELL);
+        if !(own && inside(place[1], [first, last], NORMAL_CELL * ALONG)) {
+            return Below::Steep;
+        }
+        let (normal, normal_error) = extrapolated(|share: f64| {
+            let [h, k] = [NORMAL_CELL * share, NORMAL_CELL * ALONG * share];
+            let corner = |a: f64, b: f64| self.point(strip, place[0] + a * h, place[1] + b * k);
+            (corner(0.5, 0.5) - corner(-0.5, -0.5)).cross(corner(-0.5, 0.5) - corner(0.5, -0.5)).normalize()
+        });
+        Below::At { zeta, normal, normal_error }
+    }
+}

@@ -1,0 +1,310 @@
+//! A lofted rail seen from a contact frame: the surface's height along ζ.
+//!
+//! A line along ζ meets the surface at a foot, which Newton's method finds on one strip from a place near it. Such places come from
+//! sections at equal steps along the track: runs of points over which the surface faces the wheel.
+
+use std::sync::{Arc, OnceLock};
+
+use super::bicubic::SurfacePoint;
+use super::build::Loft;
+use super::strip::Strip;
+use crate::profile::{Profile, Section, Segment, Side};
+
+/// Distance along the track of the sections from which feet are sought \[mm\].
+const LEVEL: f64 = 4.0;
+
+/// How far along the track from C the surface is looked at \[mm\]: farther than a wheel reaches.
+const FARTHEST: f64 = 4000.0;
+
+/// Distance from the end of a run \[mm\] up to which it leads to feet: what a part moves aside over half a step along the track.
+const BESIDE: f64 = 2.0;
+
+/// Most steps to a foot; three or four are usual.
+const STEPS: usize = 40;
+
+/// Longest step: in cells across, and in mm along the track.
+const LONGEST: [f64; 2] = [4.0, 20.0];
+
+/// Distance from the line along ζ \[mm\] at which the tangent plane gives the height: it is off by half of its square over the
+/// smallest radius, some 1e-13 mm.
+const NEAR: f64 = 1e-6;
+
+/// Largest distance \[mm\] of two lines along ζ of which one foot leads to the other.
+const CLOSE: f64 = 3.0;
+
+/// How far beyond the end of a strip a foot may lie, in cells and in mm: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Distance \[mm\] along ζ by which another head stands in front, with a flangeway between.
+const FLANGEWAY: f64 = 10.0;
+
+/// A lofted rail in a contact frame: its origin is C, ξ lies across the track along the surface, η ahead along it, ζ along its normal.
+#[derive(Debug, Clone)]
+pub struct FramedLoft {
+    loft: Arc<Loft>,
+    /// C \[mm\]: x, y in the list's coordinate, z.
+    origin: [f64; 3],
+    /// ξ, η and ζ in the axes of the slices.
+    axes: [[f64; 3]; 3],
+    /// Sections at equal steps, made when they are asked for.
+    levels: Vec<OnceLock<Vec<Run>>>,
+    /// Number of the first section, in steps from C.
+    first: i64,
+    /// The tangent plane at C.
+    plane: Section,
+}
+
+/// Successive nodes of a strip in one section over which ξ ascends.
+#[derive(Debug, Clone)]
+struct Run {
+    strip: usize,
+    first: usize,
+    /// ξ of the nodes \[mm\].
+    xi: Vec<f64>,
+}
+
+/// The point of the surface on a line along ζ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoftFoot {
+    /// Index of the strip.
+    pub strip: usize,
+    /// Parameters u and y \[mm\].
+    pub place: [f64; 2],
+    /// ζ \[mm\].
+    pub zeta: f64,
+    /// ∂ζ/∂ξ and ∂ζ/∂η.
+    pub slopes: [f64; 2],
+    /// ∂(u, y)/∂ξ and ∂(u, y)/∂η.
+    steps: [[f64; 2]; 2],
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl FramedLoft {
+    /// Looks at a surface from C \[mm\], where its normal leans by θ \[rad\] to the left and by ν \[rad\] ahead: it is
+    /// (−sinθ cosν, sinν, cosθ cosν).
+    ///
+    /// # Errors
+    /// None for numbers.
+    pub fn new(loft: Arc<Loft>, origin: [f64; 3], theta: f64, ahead: f64) -> crate::error::Result<Self> {
+        let ((sin, cos), (rise, run)) = (theta.sin_cos(), ahead.sin_cos());
+        let axes = [[cos, 0.0, sin], [rise * sin, run, -rise * cos], [-sin * run, rise, cos * run]];
+        let [from, to] = loft.reach().map(|y| (y - origin[1]).clamp(-FARTHEST, FARTHEST) / LEVEL);
+        let (first, last) = (from.floor() as i64, to.ceil() as i64);
+        let levels = (first..=last).map(|_| OnceLock::new()).collect();
+        let line = crate::profile::Arc::line([-FARTHEST, 0.0], [FARTHEST, 0.0])?;
+        let plane = Profile::new("tangent plane", "", vec![Segment::arc(line)])?;
+        let plane = Section::own_axes(&plane, Side::Rail);
+        Ok(Self { loft, origin, axes, levels, first, plane })
+    }
+
+    /// The surface.
+    pub fn loft(&self) -> &Arc<Loft> {
+        &self.loft
+    }
+
+    /// C \[mm\]: x, y in the list's coordinate, z.
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// The directions of ξ, η and ζ in the axes of the slices.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        self.axes
+    }
+
+    /// The tangent plane at C, in the frame.
+    pub(crate) fn plane(&self) -> &Section {
+        &self.plane
+    }
+
+    /// Takes a point \[x, y, z\] of the slices' axes into the frame \[mm\].
+    pub fn seen(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let from = [x - self.origin[0], y - self.origin[1], z - self.origin[2]];
+        self.axes.map(|axis| dot(axis, from))
+    }
+
+    /// Finds the foot at (ξ, η) \[mm\]; `None` where the rail has no surface that faces the wheel. `near` is a foot close by, if one is
+    /// known.
+    ///
+    /// Where a line meets several sheets, that nearest to the tangent plane counts, or one up to 10 mm in front of it: what stands farther
+    /// in front belongs to another head. Accuracy: 1e-12 mm on rails of usual size.
+    pub fn foot(&self, xi: f64, eta: f64, near: Option<(&LoftFoot, [f64; 2])>) -> Option<LoftFoot> {
+        let middle = ((self.axes[1][1] * eta) / LEVEL).round() as i64;
+        let alone = self.is_alone(xi, middle);
+        let near = near.filter(|(_, step)| alone && step[0].abs() <= CLOSE && step[1].abs() <= CLOSE);
+        let beside = near.and_then(|(near, step)| self.settle(near.strip, near.moved(step), xi, eta));
+        if beside.is_some() {
+            return beside;
+        }
+        let (mut found, mut count) = ([None; MOST_SHEETS], 0);
+        for level in [middle, middle - 1, middle + 1] {
+            if alone && count > 0 {
+                break;
+            }
+            for run in self.level(level).iter().filter(|run| run.holds(xi)) {
+                let y = self.origin[1] + LEVEL * level as f64;
+                let reach = self.loft.strips[run.strip].reach();
+                let guess = [run.place(xi), y.clamp(reach[0], reach[1])];
+                let Some(foot) = self.settle(run.strip, guess, xi, eta) else { continue };
+                let known = |other: &LoftFoot| (other.zeta - foot.zeta).abs() <= ROUNDING;
+                if count < MOST_SHEETS && !found[..count].iter().flatten().any(known) {
+                    found[count] = Some(foot);
+                    count += 1;
+                }
+            }
+        }
+        let mut feet: Vec<LoftFoot> = found.into_iter().flatten().collect();
+        feet.sort_by(|a, b| a.zeta.total_cmp(&b.zeta));
+        let own = (0..feet.len()).min_by(|&a, &b| feet[a].zeta.abs().total_cmp(&feet[b].zeta.abs()))?;
+        let front =
+            (own + 1..feet.len()).take_while(|&k| feet[k].zeta - feet[k - 1].zeta <= FLANGEWAY).last();
+        Some(feet[front.unwrap_or(own)])
+    }
+
+    /// Writes ζ \[mm\] at all η \[mm\] of one column; NaN where the rail has no surface.
+    pub fn column(&self, xi: f64, eta: &[f64], out: &mut [f64]) {
+        let mut last: Option<(LoftFoot, f64)> = None;
+        for (out, &eta) in out.iter_mut().zip(eta) {
+            let foot = self.foot(xi, eta, last.as_ref().map(|(foot, at)| (foot, [0.0, eta - at])));
+            *out = foot.map_or(f64::NAN, |foot| foot.zeta);
+            last = foot.map(|foot| (foot, eta));
+        }
+    }
+
+    /// The point of the surface at a foot.
+    pub fn point(&self, foot: &LoftFoot) -> SurfacePoint {
+        self.loft.strips[foot.strip].point(foot.place[0], foot.place[1])
+    }
+
+    /// ∂²ζ/∂ξ², ∂²ζ/∂ξ∂η and ∂²ζ/∂η² at C \[1/mm\]; `None` without a surface there.
+    pub fn bends(&self) -> Option<[f64; 3]> {
+        let foot = self.foot(0.0, 0.0, None)?;
+        let p = self.point(&foot);
+        let up = |v: [f64; 2]| dot(self.axes[2], [v[0], 0.0, v[1]]);
+        let (l, m, n) = (up(p.across2), up(p.mixed), up(p.along2));
+        let [per_xi, per_eta] = foot.steps;
+        let form =
+            |p: [f64; 2], q: [f64; 2]| l * p[0] * q[0] + m * (p[0] * q[1] + p[1] * q[0]) + n * p[1] * q[1];
+        Some([form(per_xi, per_xi), form(per_xi, per_eta), form(per_eta, per_eta)])
+    }
+
+    /// ∂/∂u and ∂/∂y of a point in the frame.
+    fn tangents(&self, p: &SurfacePoint) -> [[f64; 3]; 2] {
+        let across = [p.across[0], 0.0, p.across[1]];
+        let along = [p.along[0], 1.0, p.along[1]];
+        [across, along].map(|v| self.axes.map(|axis| dot(axis, v)))
+    }
+
+    /// Follows one strip to the foot at (ξ, η); `None` if it has none there that faces the wheel.
+    fn settle(&self, strip: usize, mut place: [f64; 2], xi: f64, eta: f64) -> Option<LoftFoot> {
+        let own = &self.loft.strips[strip];
+        for _ in 0..STEPS {
+            let p = own.point(place[0], place[1]);
+            let at = self.seen([p.at[0], place[1], p.at[1]]);
+            let [a, b] = self.tangents(&p);
+            let det = a[0] * b[1] - a[1] * b[0];
+            let [off, ahead] = [xi - at[0], eta - at[1]];
+            let step = [(off * b[1] - ahead * b[0]) / det, (a[0] * ahead - a[1] * off) / det];
+            if off.abs() <= NEAR && ahead.abs() <= NEAR && det > 0.0 {
+                place = [place[0] + step[0], place[1] + step[1]];
+                let zeta = at[2] + a[2] * step[0] + b[2] * step[1];
+                let slopes = [(a[2] * b[1] - a[1] * b[2]) / det, (a[0] * b[2] - a[2] * b[0]) / det];
+                let steps = [[b[1] / det, -a[1] / det], [-b[0] / det, a[0] / det]];
+                let foot = LoftFoot { strip, place, zeta, slopes, steps };
+                return on(own, place).then_some(foot);
+            }
+            let share = (0..2).map(|k| LONGEST[k] / step[k].abs()).fold(1.0, f64::min);
+            if share.is_nan() || share <= 0.0 {
+                return None;
+            }
+            let ends = [[0.0, own.cells() as f64], own.reach()];
+            // A cell or a millimetre beyond is near enough to come back from.
+            let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k][0] - 1.0, ends[k][1] + 1.0));
+            if next == place {
+                return None;
+            }
+            place = next;
+        }
+        None
+    }
+
+    /// Whether only one run is near ξ in the sections around a level.
+    fn is_alone(&self, xi: f64, level: i64) -> bool {
+        let count = |level| self.level(level).iter().filter(|run| run.holds(xi)).count();
+        (level - 1..=level + 1).all(|level| count(level) == 1)
+    }
+
+    /// The range of ξ \[mm\] over which the surface faces the wheel between two η \[mm\]; `None` if it does so nowhere.
+    pub fn reach(&self, eta: [f64; 2]) -> Option<[f64; 2]> {
+        let [from, to] =
+            eta.map(|eta| (self.axes[1][1] * eta.clamp(-FARTHEST, FARTHEST) / LEVEL).round() as i64);
+        let runs = (from..=to).flat_map(|level| self.level(level));
+        let reach = runs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], run| {
+            [low.min(run.xi[0]), high.max(run.xi[run.xi.len() - 1])]
+        });
+        (reach[0] < reach[1]).then_some(reach)
+    }
+
+    fn level(&self, level: i64) -> &[Run] {
+        let Ok(index) = usize::try_from(level - self.first) else { return &[] };
+        self.levels.get(index).map_or(&[], |runs| runs.get_or_init(|| self.runs(LEVEL * level as f64)))
+    }
+
+    /// Finds the runs in the section at `ahead` \[mm\] of C.
+    fn runs(&self, ahead: f64) -> Vec<Run> {
+        let y = self.origin[1] + ahead;
+        let mut runs: Vec<Run> = Vec::new();
+        for (strip, own) in self.loft.strips.iter().enumerate() {
+            let [from, to] = own.reach();
+            // A part that begins within a step is there for the feet that it leads to.
+            if y < from - LEVEL || y > to + LEVEL {
+                continue;
+            }
+            let y = y.clamp(from, to);
+            let mut open = false;
+            for node in 0..=own.cells() {
+                let [x, z] = own.point(node as f64, y).at;
+                let xi = dot(self.axes[0], [x - self.origin[0], 0.0, z - self.origin[2]]);
+                match runs.last_mut().filter(|_| open) {
+                    Some(run) if run.xi[run.xi.len() - 1] < xi => run.xi.push(xi),
+                    _ => runs.push(Run { strip, first: node, xi: vec![xi] }),
+                }
+                open = true;
+            }
+        }
+        runs.retain(|run| run.xi.len() > 1);
+        runs
+    }
+}
+
+/// Most sheets on one line that are told apart.
+const MOST_SHEETS: usize = 8;
+
+/// Whether a place lies on a strip.
+fn on(strip: &Strip, [u, y]: [f64; 2]) -> bool {
+    let [from, to] = strip.reach();
+    u >= -ROUNDING && u <= strip.cells() as f64 + ROUNDING && y >= from - ROUNDING && y <= to + ROUNDING
+}
+
+impl LoftFoot {
+    /// The place that a step in ξ and η \[mm\] leads to along the tangent plane.
+    fn moved(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| self.place[k] + xi * self.steps[0][k] + eta * self.steps[1][k])
+    }
+}
+
+impl Run {
+    fn holds(&self, xi: f64) -> bool {
+        self.xi[0] - BESIDE <= xi && xi <= self.xi[self.xi.len() - 1] + BESIDE
+    }
+
+    /// The parameter u at ξ \[mm\], by straight lines.
+    fn place(&self, xi: f64) -> f64 {
+        let k = self.xi.partition_point(|at| *at <= xi).clamp(1, self.xi.len() - 1);
+        let share = (xi - self.xi[k - 1]) / (self.xi[k] - self.xi[k - 1]);
+        (self.first + k - 1) as f64 + share.clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,47 @@
+//! The section of a lofted surface across the track.
+
+use super::strip::Strip;
+use crate::error::{Error, Result};
+use crate::profile::{Polynomial, Profile, Segment, Shape};
+
+/// Makes the section at y \[mm\] through one of the strips, as far as its neighbours join it.
+///
+/// # Errors
+/// A place where the strip has no surface.
+pub(super) fn section(strips: &[Strip], strip: usize, y: f64) -> Result<Profile> {
+    let here = |k: usize| (strips[k].reach()[0]..=strips[k].reach()[1]).contains(&y);
+    if !here(strip) {
+        let [from, to] = strips[strip].reach();
+        let expected = format!("a place from {from} to {to} mm, where this part of the rail is");
+        return Err(Error::new("along", format!("{y} mm"), expected, "choose another place"));
+    }
+    let beside = |part: Option<usize>| {
+        part.and_then(|part| (0..strips.len()).find(|&k| strips[k].part == part && here(k)))
+    };
+    let before = std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_sub(1)));
+    let mut run: Vec<usize> = before.collect();
+    run.reverse();
+    run.extend(std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_add(1))).skip(1));
+    let segments = run.into_iter().flat_map(|k| spans(&strips[k], y)).collect::<Result<Vec<_>>>()?;
+    Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
+}
+
+/// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out.
+fn spans(strip: &Strip, y: f64) -> Vec<Result<Segment>> {
+    let node = |k: usize| strip.point(k as f64, y);
+    let mut from = node(0);
+    let mut out = Vec::with_capacity(strip.cells());
+    for k in 1..=strip.cells() {
+        let to = node(k);
+        let cubic = |axis: usize| {
+            let (rise, [a, b]) = (to.at[axis] - from.at[axis], [from.across[axis], to.across[axis]]);
+            [from.at[axis], a, 3.0 * rise - 2.0 * a - b, a + b - 2.0 * rise]
+        };
+        if from.at != to.at {
+            let shape = Polynomial::span(&cubic(0), &cubic(1), [0.0, 1.0]).map(Shape::Polynomial);
+            out.push(shape.map(|shape| Segment { label: String::new(), shape }));
+        }
+        from = to;
+    }
+    out
+}

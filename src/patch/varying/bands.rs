@@ -1,0 +1,115 @@
+//! Joins the intervals of lines over a rail that varies along the track to bands.
+
+use super::lines::{Interval, Line, Varying, links};
+use crate::numerics::roots::bracketed;
+use crate::patch::band::{Band, Turn};
+use crate::patch::outline::{End, Window};
+use crate::placement::Placement;
+
+/// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart.
+const SHALLOW: f64 = 1e-9;
+
+/// Returns the bands in a window, and places at which s may be least.
+pub(in crate::patch) fn bands(
+    varying: &mut Varying<'_>,
+    placement: &Placement,
+    window: &Window,
+) -> (Vec<Band>, Vec<Turn>) {
+    let lines = varying.lines(placement, [window.xi, window.eta]);
+    let (mut bands, mut turns) = joined(varying, &lines, window);
+    for (lane, xi) in &mut turns {
+        *xi = turn(varying, *lane, *xi);
+        bands[*lane].valleys = vec![(bands[*lane].xi[1], vec![*lane])];
+    }
+    let turns = turns.into_iter().map(|(lane, xi)| Turn { valley: Some(lane), xi, depth: f64::NAN });
+    (bands.into_iter().filter(|band| band.xi[0] < band.xi[1]).collect(), turns.collect())
+}
+
+/// Joins the intervals of successive lines to bands.
+fn joined(varying: &mut Varying<'_>, lines: &[Line], window: &Window) -> (Vec<Band>, Vec<(usize, f64)>) {
+    let ends = [lines.first(), lines.last()].map(|line| line.map_or(f64::NAN, |line| line.xi));
+    let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, Interval)>>) = (Vec::new(), Vec::new());
+    // The band of every interval of the line before.
+    let mut current: Vec<usize> = Vec::new();
+    let nothing = Line { xi: ends[0], intervals: Vec::new() };
+    let pairs = std::iter::once(&nothing).chain(lines).zip(lines);
+    for (before, line) in pairs {
+        let links = links(before, line);
+        let alone = |side: usize, k: usize| links.iter().filter(|link| link[side] == k).count() == 1;
+        let mut next = Vec::with_capacity(line.intervals.len());
+        for (j, found) in line.intervals.iter().enumerate() {
+            let from = links.iter().find(|[i, other]| *other == j && alone(0, *i) && alone(1, j));
+            let band = from.map_or_else(
+                || {
+                    let joins = links.iter().any(|link| link[1] == j);
+                    let end =
+                        (!joins).then(|| bound(found, line.xi, [window.xi[0], ends[0]], varying.approach));
+                    let side = side(found, end);
+                    bands.push(Band::new([line.xi; 2], [end, None], [side; 2], window.eta));
+                    lanes.push(Vec::new());
+                    bands.len() - 1
+                },
+                |[i, _]| current[*i],
+            );
+            lanes[band].push((line.xi, *found));
+            next.push(band);
+        }
+        for (i, &band) in current.iter().enumerate() {
+            if next.contains(&band) {
+                continue;
+            }
+            let found = &before.intervals[i];
+            let joins = links.iter().any(|link| link[0] == i);
+            let end = (!joins).then(|| bound(found, before.xi, [f64::NAN; 2], varying.approach));
+            // Bands that join or divide meet at one ξ.
+            close(&mut bands[band], if joins { line.xi } else { before.xi }, end, side(found, end));
+        }
+        current = next;
+    }
+    if let Some(last) = lines.last() {
+        for (found, &band) in last.intervals.iter().zip(&current) {
+            let end = Some(bound(found, last.xi, [window.xi[1], ends[1]], varying.approach));
+            close(&mut bands[band], last.xi, end, side(found, end));
+        }
+    }
+    let deepest = |rows: &Vec<(f64, Interval)>| {
+        let least = |p: &&(f64, Interval), q: &&(f64, Interval)| p.1.lowest[1].total_cmp(&q.1.lowest[1]);
+        rows.iter().min_by(least).map_or(f64::NAN, |row| row.0)
+    };
+    let turns = lanes.iter().map(deepest).enumerate().collect();
+    varying.lanes = lanes;
+    (bands, turns)
+}
+
+/// Finds where s turns along a lane, near the deepest of its lines.
+fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
+    let rows = &varying.lanes[lane];
+    let at = rows.partition_point(|row| row.0 < xi);
+    let (Some(from), Some(to)) = (at.checked_sub(1).map(|k| rows[k].0), rows.get(at + 1).map(|row| row.0))
+    else {
+        return xi;
+    };
+    let slope = |xi: f64| {
+        let eta = varying.lowest(xi, Some(lane));
+        varying.evaluator.separation_and_gradient(xi, eta).1[0]
+    };
+    bracketed(slope, from, to).unwrap_or(xi)
+}
+
+fn close(band: &mut Band, xi: f64, end: Option<End>, side: [f64; 2]) {
+    (band.xi[1], band.ends[1], band.sides[1]) = (xi, end, side);
+}
+
+/// Returns what bounds an interval at its ξ: the window if ξ is its end, the end of the rail, or a tip.
+fn bound(found: &Interval, xi: f64, [window, reach]: [f64; 2], approach: f64) -> End {
+    match () {
+        () if xi == window => End::Window,
+        () if xi == reach || approach - found.lowest[1] > SHALLOW => End::ProfileEnd,
+        () => End::Tip,
+    }
+}
+
+/// Returns the side of a band: without width at a tip.
+fn side(found: &Interval, end: Option<End>) -> [f64; 2] {
+    if end == Some(End::Tip) { [found.lowest[0]; 2] } else { found.eta }
+}

@@ -1,0 +1,247 @@
+//! Lines of constant ξ over a rail that varies along the track, and the intervals of the patch on them.
+//!
+//! A line may meet the patch in several intervals of η, as on either side of a dip.
+//!
+//! Lines of constant ξ, half a millimetre apart and nearer to each other around C, are searched for intervals with s < δ. Between two
+//! lines whose intervals do not answer each other one to one, more lines are laid until the place is known to rounding: there intervals
+//! begin, end, divide or join. So a part is missed only if it is narrower than the steps in both directions and does not hold C.
+
+use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::skewed::slicer::Edge;
+use crate::placement::Placement;
+use crate::separation::Evaluator;
+
+/// Step of the lines of constant ξ \[mm\].
+const STEP: f64 = 0.5;
+
+/// Step along them, as a share of the half-length of the patch of a wheel on a straight rail; its limits \[mm\].
+const SHARE: f64 = 0.125;
+const STEPS: [f64; 2] = [0.25, 1.0];
+
+/// How far along the track from C the patch is looked for \[mm\], and how many halvings of a step lie around C.
+const FARTHEST: f64 = 120.0;
+const HALVINGS: i32 = 24;
+
+/// Points over an interval that a line near by has, and how far beyond its ends, as a share of it.
+const POINTS: usize = 12;
+const BEYOND: f64 = 0.25;
+
+/// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: nearer to a tip the rounding of s, 1e-11 mm at
+/// most, makes intervals come and go, and bands of no length.
+const NEAREST: f64 = 1e-10;
+
+/// Most lines: where s is noise of the size of δ, intervals come and go on every line.
+const MOST_LINES: usize = 20_000;
+
+/// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
+pub(in crate::patch) const SMOOTH: f64 = 1e-9;
+
+/// An interval of η of the patch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interval {
+    pub eta: [f64; 2],
+    /// Where s is least in it, and that s \[mm\].
+    pub lowest: [f64; 2],
+}
+
+/// A line of constant ξ with its intervals, by ascending η.
+#[derive(Debug, Clone)]
+pub(super) struct Line {
+    pub xi: f64,
+    pub intervals: Vec<Interval>,
+}
+
+/// The slices of a placed pair on a rail that varies at one approach.
+#[derive(Debug)]
+pub(in crate::patch) struct Varying<'a> {
+    pub(super) evaluator: Evaluator<'a>,
+    pub(super) approach: f64,
+    /// Step along lines of constant ξ \[mm\].
+    step: f64,
+    /// The lines of every band.
+    pub(super) lanes: Vec<Vec<(f64, Interval)>>,
+}
+
+impl<'a> Varying<'a> {
+    /// Makes the slices; `None` on a swept rail.
+    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Option<Self> {
+        placement.lofted()?;
+        // Of δ = NaN, where nothing is found, and below 0 the least.
+        let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
+        let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
+        Some(Self { evaluator: Evaluator::new(placement), approach, step, lanes: Vec::new() })
+    }
+
+    /// Lays the lines over a window; both ends of the range of ξ over which the rail lies in it are the first and the last. None where it
+    /// does not.
+    pub(super) fn lines(&mut self, placement: &Placement, window: [[f64; 2]; 2]) -> Vec<Line> {
+        let eta = [window[1][0].max(-FARTHEST), window[1][1].min(FARTHEST)];
+        let reach = placement.lofted().and_then(|rail| rail.reach(eta));
+        let Some([from, to]) = reach.filter(|_| eta[0] < eta[1]) else { return Vec::new() };
+        let xi = [window[0][0].max(from), window[0][1].min(to)];
+        if xi[0] >= xi[1] {
+            return Vec::new();
+        }
+        let samples = places(eta, self.step);
+        let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.line(xi, &samples)).collect();
+        self.refined(lines)
+    }
+
+    /// Returns both ends of the slice of a lane at ξ; `None` outside the patch.
+    pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[Edge; 2]> {
+        let edge = |eta: f64| Edge { eta, ledge: false };
+        self.interval(xi, lane).map(|found| found.eta.map(edge))
+    }
+
+    /// Returns η of the least s of a lane at ξ \[mm\], or of C's surroundings without one; between its lines where nothing overlaps.
+    pub(in crate::patch) fn lowest(&mut self, xi: f64, lane: Option<usize>) -> f64 {
+        if let Some(found) = self.interval(xi, lane) {
+            return found.lowest[0];
+        }
+        let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else { return 0.0 };
+        let [a, b] = beside(rows, xi).map(|k| rows[k]);
+        if (xi - a.0).abs() <= (b.0 - xi).abs() { a.1.lowest[0] } else { b.1.lowest[0] }
+    }
+
+    /// Returns s \[mm\].
+    pub(in crate::patch) fn separation(&mut self, xi: f64, eta: f64) -> f64 {
+        self.evaluator.separation(xi, eta)
+    }
+
+    /// Finds the interval of a lane at ξ: between those of the lines on both sides.
+    fn interval(&mut self, xi: f64, lane: Option<usize>) -> Option<Interval> {
+        let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else {
+            let step = self.step;
+            let found = self.line(xi, &places([-FARTHEST, FARTHEST], step));
+            return found.intervals.into_iter().min_by(|a, b| a.lowest[1].total_cmp(&b.lowest[1]));
+        };
+        let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
+        let share = if to > from { ((xi - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+        let middle = |of: &Interval| 0.5 * (of.eta[0] + of.eta[1]);
+        let near = middle(&a) + share * (middle(&b) - middle(&a));
+        let hull = [a.eta[0].min(b.eta[0]), a.eta[1].max(b.eta[1])];
+        let mut samples = Vec::new();
+        spread(hull, &mut samples);
+        let away = |of: &Interval| (near.clamp(of.eta[0], of.eta[1]) - near).abs();
+        let line = self.line(xi, &samples);
+        line.intervals.into_iter().min_by(|p, q| away(p).total_cmp(&away(q)))
+    }
+
+    /// Finds the intervals along a line by s at ascending η.
+    fn line(&mut self, xi: f64, samples: &[f64]) -> Line {
+        let mut points: Vec<[f64; 2]> = samples.iter().map(|&eta| [eta, self.separation(xi, eta)]).collect();
+        let approach = self.approach;
+        let dips: Vec<usize> = (1..points.len().max(1) - 1)
+            .filter(|&k| {
+                let [a, s, b] = [k - 1, k, k + 1].map(|k| points[k][1]);
+                // As far below as a parabola through the three may be, twice.
+                s <= a && s <= b && (s - approach < 0.5 * ((a - s) + (b - s)) || s < approach)
+            })
+            .collect();
+        for k in dips.into_iter().rev() {
+            let slope = |eta: f64| self.evaluator.separation_and_gradient(xi, eta).1[1];
+            if let Some(eta) = bracketed(slope, points[k - 1][0], points[k + 1][0]) {
+                let at = k + usize::from(eta > points[k][0]);
+                let s = self.separation(xi, eta);
+                if eta != points[k][0] && s < points[k][1] {
+                    points.insert(at, [eta, s]);
+                }
+            }
+        }
+        let mut intervals: Vec<Interval> = Vec::new();
+        let mut open: Option<Interval> = None;
+        for k in 0..points.len() {
+            let [eta, s] = points[k];
+            let inside = s < approach;
+            if inside && open.is_none() {
+                let from = if k == 0 { eta } else { self.edge(xi, eta, points[k - 1][0]) };
+                open = Some(Interval { eta: [from, eta], lowest: [eta, s] });
+            }
+            if let Some(found) = open.as_mut().filter(|_| inside) {
+                found.eta[1] = eta;
+                if s < found.lowest[1] {
+                    found.lowest = [eta, s];
+                }
+            }
+            if let Some(mut found) = open.take_if(|_| !inside) {
+                found.eta[1] = self.edge(xi, points[k - 1][0], eta);
+                intervals.push(found);
+            }
+        }
+        intervals.extend(open);
+        Line { xi, intervals }
+    }
+
+    /// Finds the end of an interval between a place inside and one outside.
+    fn edge(&mut self, xi: f64, inside: f64, outside: f64) -> f64 {
+        let approach = self.approach;
+        let root = bracketed(|eta| self.separation(xi, eta) - approach, inside, outside);
+        root.unwrap_or_else(|| last_where(|eta| self.separation(xi, eta) < approach, inside, outside))
+    }
+
+    /// Lays more lines until the intervals of neighbours answer each other, or nothing lies between the lines.
+    fn refined(&mut self, lines: Vec<Line>) -> Vec<Line> {
+        let mut out: Vec<Line> = Vec::with_capacity(2 * lines.len());
+        let mut waiting: Vec<Line> = lines.into_iter().rev().collect();
+        while let Some(next) = waiting.pop() {
+            let Some(last) = out.last().filter(|last| !answer(last, &next)) else {
+                out.push(next);
+                continue;
+            };
+            let nearest = NEAREST * last.xi.abs().max(next.xi.abs()).max(1.0);
+            if next.xi - last.xi <= nearest || out.len() > MOST_LINES {
+                out.push(next);
+                continue;
+            }
+            let mut samples = Vec::new();
+            last.intervals.iter().chain(&next.intervals).for_each(|found| spread(found.eta, &mut samples));
+            samples.sort_by(f64::total_cmp);
+            samples.dedup();
+            let between = self.line(last.xi + 0.5 * (next.xi - last.xi), &samples);
+            waiting.extend([next, between]);
+        }
+        out
+    }
+}
+
+/// Lists the pairs of overlapping intervals of two lines.
+pub(super) fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
+    let all = (0..a.intervals.len()).flat_map(|i| (0..b.intervals.len()).map(move |j| [i, j]));
+    let overlap = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a.max(c) < b.min(d);
+    all.filter(|&[i, j]| overlap(a.intervals[i].eta, b.intervals[j].eta)).collect()
+}
+
+/// Tells whether the intervals of two lines answer each other one to one.
+fn answer(a: &Line, b: &Line) -> bool {
+    let count = a.intervals.len();
+    count == b.intervals.len() && {
+        let links = links(a, b);
+        links.len() == count && links.iter().all(|[i, j]| i == j)
+    }
+}
+
+/// The indices of the rows on both sides of ξ.
+fn beside(rows: &[(f64, Interval)], xi: f64) -> [usize; 2] {
+    let last = rows.len() - 1;
+    let after = rows.partition_point(|row| row.0 < xi).min(last);
+    [after.saturating_sub(1), after]
+}
+
+/// Adds points over an interval and beyond.
+fn spread([low, high]: [f64; 2], out: &mut Vec<f64>) {
+    let more = BEYOND * (high - low);
+    let (from, length) = (low - more, high - low + 2.0 * more);
+    out.extend((0..=POINTS).map(|k| from + length * k as f64 / POINTS as f64));
+}
+
+/// Places in steps over an interval, with its ends; nearer to each other around 0 if that lies inside.
+fn places([from, to]: [f64; 2], step: f64) -> Vec<f64> {
+    let count = ((to - from) / step).ceil().max(1.0);
+    let mut out: Vec<f64> = (0..=count as usize).map(|k| from + (to - from) * k as f64 / count).collect();
+    out.push(0.0);
+    out.extend((0..HALVINGS).flat_map(|k| [1.0, -1.0].map(|sign| sign * step * 0.5f64.powi(k))));
+    out.retain(|place| (from..=to).contains(place));
+    out.sort_by(f64::total_cmp);
+    out.dedup();
+    out
+}

@@ -1,0 +1,85 @@
+//! Makes rail and wheel of both sides of a scene.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::data::Scene;
+use super::march::{list_of, loft};
+use super::profile_data::ProfileData;
+use super::profiles::{Resolved, Sources, pair_of, rail_of, wheel_of};
+use super::side_data::SideData;
+use crate::case::{Profiles, SideProfiles};
+use crate::error::{Error, Result};
+use crate::lofted::Loft;
+use crate::numerics::bodies::Bodies;
+use crate::profile::{Profile, Side};
+
+/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to the folder; each
+/// one is opened once.
+///
+/// # Errors
+/// Anything that is wrong with a profile; the error names the key.
+pub(super) fn profiles(scene: &Scene, sources: Sources<'_>) -> Result<Profiles> {
+    let both = || of_side(scene, [&scene.rail, &scene.wheel], ["rail", "wheel"], sources);
+    let own = |name: &str, side: &Option<SideData>| {
+        let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
+        if rail.is_none() && wheel.is_none() {
+            return Ok(None);
+        }
+        let places = [("rail", rail.is_some()), ("wheel", wheel.is_some())]
+            .map(|(body, own)| if own { format!("{name}: {body}") } else { body.into() });
+        let data = [rail.as_ref().unwrap_or(&scene.rail), wheel.as_ref().unwrap_or(&scene.wheel)];
+        let places = places.each_ref().map(String::as_str);
+        of_side(scene, data, places, sources).map(Some)
+    };
+    let (right, left) = (own("right", &scene.right)?, own("left", &scene.left)?);
+    match (right, left) {
+        (Some(right), Some(left)) => Ok(Profiles { right, left: Some(left) }),
+        (Some(right), None) => Ok(Profiles { right, left: Some(both()?) }),
+        (None, left) => Ok(Profiles { right: both()?, left }),
+    }
+}
+
+/// Gives rail and wheel of one side of a scene; `places` are their keys.
+fn of_side(
+    scene: &Scene,
+    data: [&ProfileData; 2],
+    places: [&str; 2],
+    sources: Sources<'_>,
+) -> Result<SideProfiles> {
+    let loft = varying(scene, data[0], places[0], sources.0)?;
+    let rail = match &loft {
+        Some((section, _)) => Resolved { profile: section.clone(), measured: None },
+        None => rail_of(data[0], places[0], sources)?,
+    };
+    let (wheel, radius) = wheel_of(scene, data[1], places[1], sources)?;
+    if loft.is_some() && scene.roller.is_some() {
+        let expected = "no roller under a rail that varies along the track";
+        return Err(Error::new("roller", "one", expected, "remove it"));
+    }
+    let pair = pair_of(scene, rail.profile, wheel.profile, radius)?;
+    let measured = Bodies { rail: rail.measured, wheel: wheel.measured };
+    Ok(SideProfiles { pair, measured, loft: loft.map(|(_, loft)| loft) })
+}
+
+/// Makes the surface of a rail that is a list of slices without a place of its own, with its section where the wheelset stands; `None` of
+/// any other rail, and of a wheelset that stands nowhere along the track.
+fn varying(
+    scene: &Scene,
+    data: &ProfileData,
+    place: &str,
+    folder: &Path,
+) -> Result<Option<(Profile, Arc<Loft>)>> {
+    let Some((list, along)) = list_of(data, Side::Rail).zip(scene.along()?) else { return Ok(None) };
+    let loft = loft(data, &folder.join(list)).map_err(|error| error.within(place))?;
+    let Some(strip) = loft.widest(along) else {
+        let [from, to] = loft.reach();
+        let expected = format!("a place from {from} to {to} mm, where the slices are");
+        let place = if scene.wheelset.is_some() { "wheelset: along" } else { "contact: along" };
+        return Err(Error::new(place, format!("{along} mm"), expected, "choose another place"));
+    };
+    let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
+    let mut section = loft.section(strip, along)?;
+    section.name = format!("{name}, {}", section.name);
+    Ok(Some((section, Arc::new(loft))))
+}

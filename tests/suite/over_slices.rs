@@ -1,0 +1,246 @@
+//! Contacts with rails that vary along the track: separation, normals, patches and runs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use wheelrail::case::{Run, SILENT};
+use wheelrail::error::Result;
+use wheelrail::lofted::{Joining, Loft};
+use wheelrail::scene;
+use wheelrail::search::TrackSide;
+use wheelrail::{
+    Evaluator, Half, ONE_CONTACT, Pair, Patch, Placement, Pose, Profile, ProfilePair, Segment, Selection,
+    Window, feasibility,
+};
+use wheelrail_report::random::Random;
+
+use super::along_track::{RADIUS, march_over, position, right, slices};
+use super::campaign::scenes;
+
+/// Half the width of a head that is one crown, and its radius \[mm\].
+const CROWN: [f64; 2] = [30.0, 300.0];
+
+/// A crown of one radius with its top at `z`.
+fn crown(z: f64) -> Profile {
+    let [half, radius] = CROWN;
+    let arc = wheelrail::Arc::about([0.0, -radius], radius, Half::Upper, [-half, half]).unwrap();
+    Profile::new("crown", "", vec![Segment::arc(arc)]).unwrap().shifted(0.0, z)
+}
+
+fn cylinder() -> Profile {
+    let line = wheelrail::Arc::line([-60.0, 0.0], [60.0, 0.0]).unwrap();
+    Profile::new("tread", "", vec![Segment::arc(line)]).unwrap()
+}
+
+/// A place of contact of a cylinder on a crown whose height along the track a function gives.
+fn on_crown(height: impl Fn(f64) -> f64, at: &[f64], yaw: f64, along: f64) -> Result<Placement> {
+    let rail = slices(at, |y| crown(height(y)));
+    let march = march_over(&rail, cylinder(), position(0.0, yaw, 0.0), 0.0)?;
+    let loft = Arc::new(Loft::new(&rail, Joining::Monotone)?);
+    let pair = Pair::new(crown(0.0), cylinder(), RADIUS)?;
+    right(&march, along).placed_on(&pair, &loft, march.system.along(true, &march.position, along))
+}
+
+/// ζ of a crown that rises at a rate, at (ξ, η) of a frame: by bisection along the line, in the axes of the slices.
+fn risen(placement: &Placement, rate: f64, [xi, eta]: [f64; 2]) -> f64 {
+    let frame = placement.lofted().unwrap();
+    let (origin, axes) = (frame.origin(), frame.axes());
+    let below = |zeta: f64| {
+        let at = [0, 1, 2].map(|k| origin[k] + xi * axes[0][k] + eta * axes[1][k] + zeta * axes[2][k]);
+        let radius = CROWN[1];
+        // z + x²/(R + √(R² − x²)) − rate y, without a large difference.
+        let fall = at[0] * at[0] / (radius + ((radius - at[0]) * (radius + at[0])).sqrt());
+        at[2] + fall - rate * at[1] < 0.0
+    };
+    let (mut low, mut high) = (-20.0, 20.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if below(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+#[test]
+fn separation_and_normals_over_a_nose_that_rises_are_those_of_an_inclined_rail() -> Result<()> {
+    let mut random = Random::new(343);
+    for (rate, yaw) in [(0.1, 0.0), (-0.1, 0.0), (0.1, 0.02), (0.02, -0.03)] {
+        let at = [-150.0, -110.0, -70.0, -35.0, 10.0, 45.0, 80.0, 120.0];
+        let placement = on_crown(|y| rate * y, &at, yaw, 12.0)?;
+        // A yawed wheel touches beside the top.
+        assert!(yaw != 0.0 || (placement.turn() + f64::atan(rate)).abs() < 1e-7, "{}", placement.turn());
+        let mut evaluator = Evaluator::new(&placement);
+        let (sin, cos) = placement.skew().sin_cos();
+        for _ in 0..500 {
+            let at = [random.between(-25.0, 25.0), random.between(-40.0, 40.0)];
+            // The cylinder about its axle, which lies R along the normal of C and is turned by the skew.
+            let across = at[1] * cos - at[0] * sin;
+            let wheel = across * across / (RADIUS + ((RADIUS - across) * (RADIUS + across)).sqrt());
+            let expected = wheel - risen(&placement, rate, at);
+            let found = evaluator.separation(at[0], at[1]);
+            assert!((found - expected).abs() < 1e-10, "{rate} {yaw} {at:?}: {found} instead of {expected}");
+            // Normals by differences of the closed form.
+            let h = 1e-3;
+            let slope = |step: [f64; 2]| {
+                let beside = |sign: f64| risen(&placement, rate, [0, 1].map(|k| at[k] + sign * h * step[k]));
+                (beside(1.0) - beside(-1.0)) / (2.0 * h)
+            };
+            let normal = evaluator.normals(at[0], at[1]).rail.unwrap();
+            let off = [slope([1.0, 0.0]) + normal.x / normal.z, slope([0.0, 1.0]) + normal.y / normal.z];
+            assert!(off[0].abs() < 1e-9 && off[1].abs() < 1e-9, "{at:?}: {off:?}");
+        }
+        assert!(evaluator.separation(2.0 * CROWN[0], 0.0).is_nan());
+        assert!(feasibility(&placement).unwrap().feasible);
+    }
+    Ok(())
+}
+
+#[test]
+fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()> {
+    let pair = Pair::new(crown(0.0), cylinder(), RADIUS)?;
+    let loft =
+        Arc::new(Loft::new(&slices(&[-300.0, -40.0, 5.0, 45.0, 300.0], |_| crown(0.0)), Joining::Monotone)?);
+    let profiles = ProfilePair::new(&pair)?;
+    let mut search = profiles.search();
+    let mut random = Random::new(344);
+    for _ in 0..scenes().div_ceil(8) {
+        let pose = Pose::new(
+            random.between(-3.0, 3.0),
+            random.between(-0.005, 0.005),
+            random.between(-0.005, 0.005),
+        )?;
+        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT });
+        let contact = touch.expect("a wheel on a rail").contacts[0];
+        let (swept, lofted) =
+            (contact.placed(&pair)?, contact.placed_on(&pair, &loft, random.between(-9.0, 9.0))?);
+        let (mut own, mut other) = (Evaluator::new(&lofted), Evaluator::new(&swept));
+        for _ in 0..100 {
+            let at = [random.between(-15.0, 15.0), random.between(-15.0, 15.0)];
+            let (found, expected) = (own.separation(at[0], at[1]), other.separation(at[0], at[1]));
+            let same = found.is_nan() && expected.is_nan() || (found - expected).abs() < 1e-10;
+            assert!(same, "{pose:?} {at:?}: {found} instead of {expected}");
+        }
+        let approach = random.between(0.01, 0.1);
+        let [found, expected] = [&lofted, &swept].map(|p| Patch::new(p, approach, &Window::UNBOUNDED));
+        assert_eq!(found.components.len(), expected.components.len(), "{pose:?}");
+        assert!((found.area() / expected.area() - 1.0).abs() < 1e-7, "{} {}", found.area(), expected.area());
+        for (found, expected) in found.components.iter().zip(&expected.components) {
+            let off = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+            assert!(off(found.xi, expected.xi) < 1e-6 && off(found.eta, expected.eta) < 1e-3, "{pose:?}");
+            assert!((found.perimeter / expected.perimeter - 1.0).abs() < 1e-6, "{pose:?}");
+            assert!((found.deepest[0] - expected.deepest[0]).abs() < 1e-9, "{pose:?}");
+            for at in &found.boundary {
+                assert!((own.separation(at[0], at[1]) - approach).abs() < 1e-8, "{pose:?} {at:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_patch_of_a_wheel_over_a_hollow_is_that_of_a_brute_force() -> Result<()> {
+    let at: Vec<f64> = (-20..=20).map(|k| 10.0 * f64::from(k)).collect();
+    let hollow = |y: f64| 5.0 * (1.0 - (-y * y / 1600.0).exp()) - 5.0;
+    // One part beside the middle, two with the wheel nearly over it.
+    for (along, approach, parts) in [(3.0, 0.4, None), (0.3, 0.2, Some(2))] {
+        let placement = on_crown(hollow, &at, 0.0, along)?;
+        let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+        assert!(parts.is_none_or(|parts| patch.components.len() == parts), "{}", patch.components.len());
+        let mut evaluator = Evaluator::new(&placement);
+        // Squares whose middles overlap, of a tenth of a millimetre.
+        let (mut area, mut ends) = (0.0, [0.0f64; 2]);
+        for i in -400..400 {
+            for j in -1200..1200 {
+                let [xi, eta] = [i, j].map(|k| 0.1 * (f64::from(k) + 0.5));
+                if evaluator.separation(xi, eta) < approach {
+                    area += 0.01;
+                    ends = [ends[0].min(eta), ends[1].max(eta)];
+                }
+            }
+        }
+        assert!((patch.area() / area - 1.0).abs() < 0.01, "{along}: {} instead of {area}", patch.area());
+        let extent = patch.extent().unwrap();
+        let off = [0, 1].map(|end| (extent.eta[end] - ends[end]).abs());
+        assert!(off[0] < 0.2 && off[1] < 0.2, "{along}: {extent:?} {ends:?}");
+        for at in patch.components.iter().flat_map(|component| &component.boundary) {
+            let s = evaluator.separation(at[0], at[1]);
+            assert!((s - approach).abs() < 1e-8, "{along} {at:?}: {s}");
+        }
+    }
+    Ok(())
+}
+
+/// A run of the example at a place along the track.
+fn run(along: f64, more: &str) -> Result<Run> {
+    run_text(&along.to_string(), more)
+}
+
+#[test]
+fn a_wheel_on_the_nose_of_a_crossing_is_run_like_any_other() -> Result<()> {
+    let run = run(160.0, "[patch]\napproach = 0.05")?;
+    let right = &run.parts[0];
+    assert_eq!(right.site.side(), Some(TrackSide::Right));
+    let placement = &right.site.contact.placement;
+    assert!((placement.turn() + f64::atan(0.05)).abs() < 2e-3, "{}", placement.turn());
+    assert!(run.refusals().is_empty(), "{:?}", run.refusals());
+    let patch = right.analysis.patch.as_ref().unwrap();
+    assert!(patch.components.len() == 1 && !patch.cut_by_window() && patch.area() > 10.0, "{patch:?}");
+    // The mesh covers the patch, and the grid has numbers.
+    let cells: f64 = right.analysis.strips.as_ref().unwrap().cells.iter().map(|cell| cell.area).sum();
+    assert!((cells / patch.area() - 1.0).abs() < 1e-9, "{cells}");
+    assert!(right.analysis.separation.iter().all(|s| s.is_finite()));
+    assert!(right.analysis.plan.error < 1e-11, "{}", right.analysis.plan.error);
+    // The other side is extruded.
+    assert!(run.parts.last().unwrap().site.contact.placement.lofted().is_none());
+    Ok(())
+}
+
+#[test]
+fn a_single_wheel_stands_on_a_crossing_as_that_of_a_wheelset_does() -> Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let rail = text.split("[right.rail]").nth(1).unwrap().split("\n\n").next().unwrap();
+    let text = format!(
+        "[rail]{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = 0.0\nalong = 160.0\n[patch]\napproach = 0.05"
+    );
+    let run = Run::new(scene::resolve(&scene::parse(&text, false)?, &folder, "")?, SILENT)?;
+    let patch = run.parts[0].analysis.patch.as_ref().unwrap();
+    assert!(patch.area() > 10.0 && patch.area() < 400.0, "{}", patch.area());
+    assert!(run.parts[0].analysis.separation.iter().all(|s| s.is_finite()));
+    Ok(())
+}
+
+#[test]
+fn wing_and_nose_share_a_load() -> Result<()> {
+    let run = run(122.5, "[patch]\nload = 1.0e5")?;
+    let right = run.parts.iter().filter(|part| part.site.side() == Some(TrackSide::Right));
+    let areas: Vec<f64> = right.map(|part| part.analysis.patch.as_ref().unwrap().area()).collect();
+    assert!(!areas.is_empty() && areas.iter().all(|area| *area > 1.0 && *area < 1000.0), "{areas:?}");
+    Ok(())
+}
+
+#[test]
+fn what_rails_that_vary_do_not_have_is_refused_by_name() {
+    for (along, more, message) in [
+        ("160.0", "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" on a rail that varies"),
+        ("160.0", "[motion]\nspeed = 10.0", "motion: found a motion over a rail that varies"),
+        ("160.0", "[patch]\napproach = 0.05\nframe = \"weighted\"", "patch: frame: found"),
+        ("160.0", "[roller]\nradius = 350.0", "roller: found one"),
+        ("999.0", "", "wheelset: along: found 999 mm; expected a place from -150 to 350 mm"),
+        ("nan", "", "wheelset: along"),
+        (
+            "160.0",
+            "[grid]\nmethod = \"report-newton\"\n[patch]\napproach = 0.05",
+            "grid: method: found report-newton with",
+        ),
+    ] {
+        let error = run_text(along, more).map(drop).unwrap_err().to_string();
+        assert!(error.contains(message), "{more}: {error}");
+    }
+}
+
+fn run_text(along: &str, more: &str) -> Result<Run> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let text = text.replace("lateral = 0.0", &format!("lateral = 0.0\nalong = {along}"));
+    Run::new(scene::resolve(&scene::parse(&format!("{text}\n{more}"), false)?, &folder, "")?, SILENT)
+}
