@@ -33,6 +33,7 @@ pub struct Bicubic {
 }
 
 /// Hermite's four cubics on \[0, 1\] and their first two derivatives: value and slope at 0, value and slope at 1.
+#[inline(always)]
 pub(super) fn hermite(t: f64) -> [[f64; 4]; 3] {
     let (t2, s) = (t * t, 1.0 - t);
     [
@@ -44,6 +45,8 @@ pub(super) fn hermite(t: f64) -> [[f64; 4]; 3] {
 
 impl Bicubic {
     /// Returns the point at the share f of the cell across and at y \[mm\].
+    // Inline, so that derivatives nobody takes are not computed.
+    #[inline(always)]
     pub fn point(&self, f: f64, y: f64) -> SurfacePoint {
         let step = self.y[1] - self.y[0];
         let (u, v) = (hermite(f), hermite((y - self.y[0]) / step));

@@ -22,6 +22,10 @@ const BESIDE: f64 = 2.0;
 /// Most steps to a foot; three or four are usual.
 const STEPS: usize = 40;
 
+/// Most steps in which the distance from the line does not shrink to this share of the least so far: there is no foot then.
+const PATIENCE: usize = 4;
+const SHRINKS: f64 = 0.8;
+
 /// Longest step: in cells across, and in mm along the track.
 const LONGEST: [f64; 2] = [4.0, 20.0];
 
@@ -201,12 +205,19 @@ impl FramedLoft {
     /// Follows one strip to the foot at (ξ, η); `None` if it has none there that faces the wheel.
     fn settle(&self, strip: usize, mut place: [f64; 2], xi: f64, eta: f64) -> Option<LoftFoot> {
         let own = &self.loft.strips[strip];
+        let (mut least, mut waited) = (f64::INFINITY, 0);
         for _ in 0..STEPS {
             let p = own.point(place[0], place[1]);
             let at = self.seen([p.at[0], place[1], p.at[1]]);
             let [a, b] = self.tangents(&p);
             let det = a[0] * b[1] - a[1] * b[0];
             let [off, ahead] = [xi - at[0], eta - at[1]];
+            let distance = off.hypot(ahead);
+            waited = if distance < SHRINKS * least { 0 } else { waited + 1 };
+            least = least.min(distance);
+            if waited > PATIENCE {
+                return None;
+            }
             let step = [(off * b[1] - ahead * b[0]) / det, (a[0] * ahead - a[1] * off) / det];
             if off.abs() <= NEAR && ahead.abs() <= NEAR && det > 0.0 {
                 place = [place[0] + step[0], place[1] + step[1]];

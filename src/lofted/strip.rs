@@ -110,11 +110,15 @@ impl Strip {
     }
 
     /// Returns the point at (u, y \[mm\]); parameters beyond the strip continue its last cubics.
+    // Inline, as that of a bicubic is.
+    #[inline(always)]
     pub fn point(&self, u: f64, y: f64) -> SurfacePoint {
         let cell = (u.max(0.0) as usize).min(self.cells - 1);
         let (interval, f) = (self.interval_at(y), u - cell as f64);
         match &self.surface {
-            Surface::Joined { .. } => interval.cell(cell).point(f, y),
+            Surface::Joined { corners, .. } => {
+                joined(corners, self.cells, &self.at, [interval.index, cell]).point(f, y)
+            }
             Surface::Kept(kept) => kept.point(interval.index, cell, f, y),
         }
     }
@@ -167,6 +171,7 @@ impl<'a> Interval<'a> {
 }
 
 /// The bicubic of a cell of an interval between slices.
+#[inline(always)]
 fn joined(corners: &[Corner], cells: usize, at: &[f64], [interval, cell]: [usize; 2]) -> Bicubic {
     let corner = |a: usize, b: usize| corners[(interval + b) * (cells + 1) + cell + a];
     let corners = [0, 1].map(|a| [0, 1].map(|b| corner(a, b)));

@@ -45,6 +45,34 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     }
 }
 
+/// Most secant steps.
+const MOST_SECANTS: usize = 8;
+
+/// Finds the root of a smooth `f` between two places by a few secant steps; the last one is at most `enough`.
+///
+/// Accuracy: where f bends by little over the bracket, far better than `enough`.
+/// Degenerate: `None` where the signs are equal or a value is NaN, where a step leaves the bracket, and after eight steps.
+pub fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enough: f64) -> Option<f64> {
+    let bounds = [last.min(at), last.max(at)];
+    let (mut before, mut value) = (f(last), f(at));
+    // NaN is refused, too.
+    if !(before * value < 0.0) {
+        return None;
+    }
+    for _ in 0..MOST_SECANTS {
+        let next = at - value * ((at - last) / (value - before));
+        if !(bounds[0] <= next && next <= bounds[1]) {
+            return None;
+        }
+        if (next - at).abs() <= enough {
+            return Some(next);
+        }
+        (last, before) = (at, value);
+        (at, value) = (next, f(next));
+    }
+    None
+}
+
 /// Finds the last number for which `holds` is true, from `on`, where it is true, towards `off`, where it is false. Of several such
 /// numbers it is any one.
 ///
@@ -70,6 +98,16 @@ mod tests {
         assert!(root.is_some_and(|x| (x - 2f64.sqrt()).abs() <= f64::EPSILON * 2.0));
         let flat = bracketed(|x| (x - 0.3).powi(5), -1.0, 1.0);
         assert!(flat.is_some_and(|x| (x - 0.3).abs() < 1e-10), "{flat:?}");
+    }
+
+    #[test]
+    fn secants_find_smooth_roots_between_their_ends_alone() {
+        let root = secant(|x| x * x - 2.0, [1.2, 1.6], 1e-6);
+        assert!(root.is_some_and(|x| (x - 2f64.sqrt()).abs() < 1e-11), "{root:?}");
+        assert_eq!(secant(|x| x * x - 2.0, [1.5, 1.6], 1e-6), None);
+        assert_eq!(secant(|x| if x < 0.0 { f64::NAN } else { x - 0.5 }, [-1.0, 1.0], 1e-6), None);
+        // A step is no root.
+        assert_eq!(secant(|x| if x < 0.3 { -1.0 } else { 5.0 }, [0.0, 1.0], 1e-12), None);
     }
 
     #[test]

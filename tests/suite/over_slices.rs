@@ -169,6 +169,76 @@ fn the_patch_of_a_wheel_over_a_hollow_is_that_of_a_brute_force() -> Result<()> {
     Ok(())
 }
 
+/// Steps of the points of a flood fill across and along \[mm\], and how far it goes.
+const FLOOD: [f64; 2] = [0.25, 0.5];
+const FLOODED: [f64; 2] = [20.0, 70.0];
+
+/// Distance of s from δ \[mm\] within which a point may be on either side of the boundary.
+const ON_BOUNDARY: f64 = 1e-7;
+
+/// Whether every point of a flood fill is inside the patch where s < δ, and neighbours inside are of one component.
+fn floods(placement: &Placement, patch: &Patch) -> std::result::Result<usize, String> {
+    let mut evaluator = Evaluator::new(placement);
+    let [columns, rows] = [0, 1].map(|k| (FLOODED[k] / FLOOD[k]) as i32);
+    let mut inside = 0;
+    let mut before: Vec<Option<usize>> = vec![None; 2 * rows as usize + 1];
+    for i in -columns..=columns {
+        // Off every symmetry.
+        let xi = FLOOD[0] * (f64::from(i) + 0.137);
+        let slices = patch.slices(xi);
+        for j in -rows..=rows {
+            let eta = FLOOD[1] * (f64::from(j) + 0.213);
+            let s = evaluator.separation(xi, eta);
+            let of =
+                slices.iter().find(|(_, slice)| slice.eta[0] <= eta && eta <= slice.eta[1]).map(|(k, _)| *k);
+            if (s - patch.approach).abs() > ON_BOUNDARY && (s < patch.approach) != of.is_some() {
+                return Err(format!("({xi}, {eta}): s = {s}, δ = {}, component {of:?}", patch.approach));
+            }
+            let known = &mut before[(j + rows) as usize];
+            let mut joined = || {
+                (1..8).all(|k| evaluator.separation(xi - FLOOD[0] * f64::from(k) / 8.0, eta) < patch.approach)
+            };
+            if let (Some(a), Some(b)) = (*known, of)
+                && a != b
+                && joined()
+            {
+                return Err(format!("({xi}, {eta}): components {a} and {b} are one"));
+            }
+            (*known, inside) = (of, inside + usize::from(of.is_some()));
+        }
+    }
+    Ok(inside)
+}
+
+#[test]
+fn patches_over_random_rails_are_what_a_flood_fill_finds() -> Result<()> {
+    let mut random = Random::new(346);
+    let at: Vec<f64> = (-40..=40).map(|k| 7.5 * f64::from(k)).collect();
+    let (mut found, mut several) = (0u64, 0);
+    for scene in 0..scenes().div_ceil(2) {
+        // Waves of 30 to 150 mm, of up to the depth that a wheel of 460 mm follows.
+        let waves: [[f64; 3]; 3] = std::array::from_fn(|_| {
+            let length = random.between(30.0, 150.0);
+            let depth = random.between(0.0, 1.0) * length * length / (40.0 * RADIUS);
+            [depth, std::f64::consts::TAU / length, random.between(0.0, 6.0)]
+        });
+        let height = |y: f64| waves.iter().map(|[depth, rate, phase]| depth * (rate * y + phase).sin()).sum();
+        let (yaw, along) = (random.between(-0.02, 0.02), random.between(-20.0, 20.0));
+        let placement = on_crown(height, &at, if scene % 3 == 0 { 0.0 } else { yaw }, along)?;
+        let approach = 10.0f64.powf(random.between(-3.0, -0.3));
+        let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+        match floods(&placement, &patch) {
+            Ok(inside) => found += u64::from(inside > 0),
+            Err(fault) => panic!("scene {scene}, yaw {yaw}, along {along}, {waves:?}: {fault}"),
+        }
+        several += usize::from(patch.components.len() > 1);
+        assert!(patch.components.len() < 10, "scene {scene}: {} components", patch.components.len());
+        assert!(feasibility(&placement).unwrap().least_separation_mm > -1e-8, "scene {scene}");
+    }
+    assert!(2 * found > scenes().div_ceil(2) && several > 0, "{found} {several}");
+    Ok(())
+}
+
 /// A run of the example at a place along the track.
 fn run(along: f64, more: &str) -> Result<Run> {
     run_text(&along.to_string(), more)

@@ -124,14 +124,16 @@ pub(super) fn check_lofted(
             (Below::Nothing, _) | (_, AlongZeta::Nothing) if found.separation.is_nan() => no_surface += 1,
             (Below::Nothing, _) | (_, AlongZeta::Nothing) => surface_disputed += 1,
             _ if found.separation.is_nan() => surface_disputed += 1,
-            (Below::At { zeta, normal, normal_error }, AlongZeta::Heights(heights)) => {
+            (Below::At { zeta, upright, normal }, AlongZeta::Heights(heights)) => {
                 let error = heights.iter().map(|h| h.error).fold(0.0, f64::max);
-                let allowed = SAFETY * error + ROUNDINGS * rail.size / normal.z.min(heights[0].normal.z);
+                let allowed = SAFETY * error + ROUNDINGS * rail.size / upright.min(heights[0].normal.z);
                 separation.push(((found.separation - (heights[0].zeta - zeta)).abs(), allowed, at));
                 let own =
                     found.normals.rail.map_or(Vector::NAN, |n| Vector::from_array(n.into_inner().into()));
                 let rounding = ROUNDINGS * rail.size / NORMAL_CELL;
-                normals.push((own.distance(normal), SAFETY * normal_error + rounding, at));
+                if let Some((normal, normal_error)) = normal {
+                    normals.push((own.distance(normal), SAFETY * normal_error + rounding, at));
+                }
             }
         }
     }
@@ -151,7 +153,13 @@ pub(super) fn check_lofted(
 
 /// What a ray finds of the rail.
 enum Below {
-    At { zeta: f64, normal: Vector, normal_error: f64 },
+    At {
+        zeta: f64,
+        /// ζ component of the last mesh's normal.
+        upright: f64,
+        /// The unit normal with its estimated error; `None` beside a slice or a cell's side, where curvature may jump.
+        normal: Option<(Vector, f64)>,
+    },
     Nothing,
     Steep,
 }
@@ -241,7 +249,7 @@ impl<'a> MeshedRail<'a> {
         }
         let strip = &self.lofted.loft().strips[own.strip];
         let mut place = parameters([&own.u, &own.y], &hit);
-        let (mut share, mut zeta) = (CELLS[0], hit.point.z);
+        let (mut share, mut zeta, mut upright) = (CELLS[0], hit.point.z, 1.0);
         while share >= CELLS[1] {
             let nodes = |at: f64, cell: f64| -> Vec<f64> {
                 // Off every symmetry, so that the ray meets no side.
@@ -256,7 +264,8 @@ impl<'a> MeshedRail<'a> {
             else {
                 return Below::Steep;
             };
-            if mesh.normal(hit.triangle).z < STEEPEST {
+            upright = mesh.normal(hit.triangle).z;
+            if upright < STEEPEST {
                 return Below::Steep;
             }
             (place, zeta) = (parameters([&u, &y], &hit), hit.point.z);
@@ -268,11 +277,13 @@ impl<'a> MeshedRail<'a> {
         if !(own && inside(place[1], [first, last], NORMAL_CELL * ALONG)) {
             return Below::Steep;
         }
-        let (normal, normal_error) = extrapolated(|share: f64| {
+        let own = inside(place[0].fract(), [0.0, 1.0], NORMAL_CELL);
+        let smooth = own && inside(place[1], strip.interval_at(place[1]).y(), NORMAL_CELL * ALONG);
+        let direction = |share: f64| {
             let [h, k] = [NORMAL_CELL * share, NORMAL_CELL * ALONG * share];
             let corner = |a: f64, b: f64| self.point(strip, place[0] + a * h, place[1] + b * k);
             (corner(0.5, 0.5) - corner(-0.5, -0.5)).cross(corner(-0.5, 0.5) - corner(0.5, -0.5)).normalize()
-        });
-        Below::At { zeta, normal, normal_error }
+        };
+        Below::At { zeta, upright, normal: smooth.then(|| extrapolated(direction)) }
     }
 }

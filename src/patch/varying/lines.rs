@@ -6,7 +6,7 @@
 //! lines whose intervals do not answer each other one to one, more lines are laid until the place is known to rounding: there intervals
 //! begin, end, divide or join. So a part is missed only if it is narrower than the steps in both directions and does not hold C.
 
-use crate::numerics::roots::{bracketed, last_where};
+use crate::numerics::roots::{bracketed, last_where, secant};
 use crate::patch::skewed::slicer::Edge;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -18,9 +18,16 @@ const STEP: f64 = 0.5;
 const SHARE: f64 = 0.125;
 const STEPS: [f64; 2] = [0.25, 1.0];
 
+/// Longest step along a line, where s is far above δ \[mm\], and the step as a share of that distance: s falls by less than half of it.
+const STRIDE: f64 = 2.5;
+const STRIDE_SHARE: f64 = 2.0;
+
 /// How far along the track from C the patch is looked for \[mm\], and how many halvings of a step lie around C.
 const FARTHEST: f64 = 120.0;
 const HALVINGS: i32 = 24;
+
+/// By how much ends of intervals move from line to line, as a multiple of the distance of the lines, without more lines between them.
+const STEEPEST: f64 = 4.0;
 
 /// Points over an interval that a line near by has, and how far beyond its ends, as a share of it.
 const POINTS: usize = 12;
@@ -35,6 +42,13 @@ const MOST_LINES: usize = 20_000;
 
 /// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
 pub(in crate::patch) const SMOOTH: f64 = 1e-9;
+
+/// Last step to an edge \[mm\], and to a lowest place, where s is flat.
+const TO_EDGE: f64 = 1e-9;
+const TO_LOWEST: f64 = 1e-6;
+
+/// How far from an edge one is looked for that its neighbours tell, as a share of the interval's length.
+const BESIDE_EDGE: f64 = 0.02;
 
 /// An interval of η of the patch.
 #[derive(Debug, Clone, Copy)]
@@ -82,15 +96,34 @@ impl<'a> Varying<'a> {
         if xi[0] >= xi[1] {
             return Vec::new();
         }
-        let samples = places(eta, self.step);
-        let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.line(xi, &samples)).collect();
+        let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.whole_line(xi, eta)).collect();
         self.refined(lines)
     }
 
     /// Returns both ends of the slice of a lane at ξ; `None` outside the patch.
     pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[Edge; 2]> {
         let edge = |eta: f64| Edge { eta, ledge: false };
-        self.interval(xi, lane).map(|found| found.eta.map(edge))
+        let near = self.edges_between(xi, lane);
+        near.or_else(|| self.interval(xi, lane).map(|found| found.eta)).map(|eta| eta.map(edge))
+    }
+
+    /// Finds both ends of the slice of a lane at ξ next to those that the lines on both sides tell; `None` where they are not there.
+    fn edges_between(&mut self, xi: f64, lane: Option<usize>) -> Option<[f64; 2]> {
+        let rows = self.lanes.get(lane?)?;
+        let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
+        let share = ((xi - from) / (to - from)).clamp(0.0, 1.0);
+        let half = |of: &Interval| 0.5 * (of.eta[1] - of.eta[0]);
+        let middle = |of: &Interval| 0.5 * (of.eta[0] + of.eta[1]);
+        let square = half(&a).powi(2) + share * (half(&b).powi(2) - half(&a).powi(2));
+        let (half, middle) = (square.sqrt(), middle(&a) + share * (middle(&b) - middle(&a)));
+        let (near, approach) = (BESIDE_EDGE * half, self.approach);
+        let mut found = [0.0; 2];
+        for (found, outward) in found.iter_mut().zip([-1.0, 1.0]) {
+            let guess = middle + outward * half;
+            let depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
+            *found = secant(depth, [guess - outward * near, guess + outward * near], TO_EDGE)?;
+        }
+        Some(found)
     }
 
     /// Returns η of the least s of a lane at ξ \[mm\], or of C's surroundings without one; between its lines where nothing overlaps.
@@ -111,8 +144,7 @@ impl<'a> Varying<'a> {
     /// Finds the interval of a lane at ξ: between those of the lines on both sides.
     fn interval(&mut self, xi: f64, lane: Option<usize>) -> Option<Interval> {
         let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else {
-            let step = self.step;
-            let found = self.line(xi, &places([-FARTHEST, FARTHEST], step));
+            let found = self.whole_line(xi, [-FARTHEST, FARTHEST]);
             return found.intervals.into_iter().min_by(|a, b| a.lowest[1].total_cmp(&b.lowest[1]));
         };
         let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
@@ -127,9 +159,33 @@ impl<'a> Varying<'a> {
         line.intervals.into_iter().min_by(|p, q| away(p).total_cmp(&away(q)))
     }
 
+    /// Finds the intervals along a line between two η \[mm\].
+    fn whole_line(&mut self, xi: f64, ends: [f64; 2]) -> Line {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        let [from, to] = ends;
+        for eta in places([(-self.step).clamp(from, to), self.step.clamp(from, to)], self.step) {
+            points.push([eta, self.separation(xi, eta)]);
+        }
+        for (end, outward) in ends.into_iter().zip([-1.0, 1.0]) {
+            points.reverse();
+            while let Some(&[eta, s]) = points.last().filter(|[eta, _]| (end - eta) * outward > 0.0) {
+                // NaN, where there is no surface, makes the shortest step.
+                let stride = (STRIDE_SHARE * (s - self.approach)).max(self.step).min(STRIDE);
+                let next = if stride < (end - eta).abs() { eta + outward * stride } else { end };
+                points.push([next, self.separation(xi, next)]);
+            }
+        }
+        self.intervals(xi, points)
+    }
+
     /// Finds the intervals along a line by s at ascending η.
     fn line(&mut self, xi: f64, samples: &[f64]) -> Line {
-        let mut points: Vec<[f64; 2]> = samples.iter().map(|&eta| [eta, self.separation(xi, eta)]).collect();
+        let points = samples.iter().map(|&eta| [eta, self.separation(xi, eta)]).collect();
+        self.intervals(xi, points)
+    }
+
+    /// Finds the intervals along a line of which points \[η, s\] are known, by ascending η.
+    fn intervals(&mut self, xi: f64, mut points: Vec<[f64; 2]>) -> Line {
         let approach = self.approach;
         let dips: Vec<usize> = (1..points.len().max(1) - 1)
             .filter(|&k| {
@@ -139,8 +195,10 @@ impl<'a> Varying<'a> {
             })
             .collect();
         for k in dips.into_iter().rev() {
-            let slope = |eta: f64| self.evaluator.separation_and_gradient(xi, eta).1[1];
-            if let Some(eta) = bracketed(slope, points[k - 1][0], points[k + 1][0]) {
+            let mut slope = |eta: f64| self.evaluator.separation_and_gradient(xi, eta).1[1];
+            let [from, to] = [points[k - 1][0], points[k + 1][0]];
+            let lowest = secant(&mut slope, [from, to], TO_LOWEST);
+            if let Some(eta) = lowest.or_else(|| bracketed(slope, from, to)) {
                 let at = k + usize::from(eta > points[k][0]);
                 let s = self.separation(xi, eta);
                 if eta != points[k][0] && s < points[k][1] {
@@ -175,8 +233,10 @@ impl<'a> Varying<'a> {
     /// Finds the end of an interval between a place inside and one outside.
     fn edge(&mut self, xi: f64, inside: f64, outside: f64) -> f64 {
         let approach = self.approach;
-        let root = bracketed(|eta| self.separation(xi, eta) - approach, inside, outside);
-        root.unwrap_or_else(|| last_where(|eta| self.separation(xi, eta) < approach, inside, outside))
+        let mut depth = |eta: f64| self.separation(xi, eta) - approach;
+        let root = secant(&mut depth, [inside, outside], TO_EDGE);
+        let root = root.or_else(|| bracketed(&mut depth, inside, outside));
+        root.unwrap_or_else(|| last_where(|eta| depth(eta) < 0.0, inside, outside))
     }
 
     /// Lays more lines until the intervals of neighbours answer each other, or nothing lies between the lines.
@@ -184,7 +244,7 @@ impl<'a> Varying<'a> {
         let mut out: Vec<Line> = Vec::with_capacity(2 * lines.len());
         let mut waiting: Vec<Line> = lines.into_iter().rev().collect();
         while let Some(next) = waiting.pop() {
-            let Some(last) = out.last().filter(|last| !answer(last, &next)) else {
+            let Some(last) = out.last().filter(|last| !answer(last, &next, self.step)) else {
                 out.push(next);
                 continue;
             };
@@ -211,12 +271,17 @@ pub(super) fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
     all.filter(|&[i, j]| overlap(a.intervals[i].eta, b.intervals[j].eta)).collect()
 }
 
-/// Tells whether the intervals of two lines answer each other one to one.
-fn answer(a: &Line, b: &Line) -> bool {
-    let count = a.intervals.len();
+/// Tells whether the intervals of two lines answer each other one to one, and none has an end that moves by more than a step \[mm\] or
+/// [`STEEPEST`] times the distance of the lines: another interval may begin and join it in between.
+fn answer(a: &Line, b: &Line, step: f64) -> bool {
+    let (count, farthest) = (a.intervals.len(), step.max(STEEPEST * (b.xi - a.xi)));
+    let near = |[i, j]: &[usize; 2]| {
+        let [from, to] = [a.intervals[*i].eta, b.intervals[*j].eta];
+        i == j && (0..2).all(|end| (to[end] - from[end]).abs() <= farthest)
+    };
     count == b.intervals.len() && {
         let links = links(a, b);
-        links.len() == count && links.iter().all(|[i, j]| i == j)
+        links.len() == count && links.iter().all(near)
     }
 }
 
