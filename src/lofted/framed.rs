@@ -29,9 +29,9 @@ const SHRINKS: f64 = 0.8;
 /// Longest step: in cells across, and in mm along the track.
 const LONGEST: [f64; 2] = [4.0, 20.0];
 
-/// Distance from the line along ζ \[mm\] at which the tangent plane gives the height: it is off by half of its square over the
-/// smallest radius, some 1e-13 mm.
-const NEAR: f64 = 1e-6;
+/// Distance from the line along ζ \[mm\] at which the tangent plane is that of the foot: its slopes are off by that distance over the
+/// smallest radius, some 1e-11, and the height by far less than rounding.
+const NEAR: f64 = 1e-10;
 
 /// Largest distance \[mm\] of two lines along ζ of which one foot leads to the other.
 const CLOSE: f64 = 3.0;
