@@ -137,7 +137,7 @@ back = [[*columns[k], -sum(a * b for a, b in zip(columns[k], columns[3]))] for k
 behind = (area or grid).GetDataInformation().GetBounds()[3] + 0.1 * size
 SKINS = {"rails.vtp": [0.70, 0.73, 0.76], "wheels.vtp": [0.45, 0.60, 0.80]}
 SECTIONS = {"rails.vtp": [0.56, 0.59, 0.62], "wheels.vtp": [0.30, 0.44, 0.63]}
-for name, begin, level in [("rails.vtp", bounds[2] - 0.3 * size, -70.0), ("wheels.vtp", behind, 32.0)]:
+for name, begin, level in [("rails.vtp", bounds[2] - 0.3 * size, -90.0), ("wheels.vtp", behind, 26.0)]:
     source = loaded(os.path.join(summary["wheelset_files"], name))
     for part, is_skin in body(source, begin, behind + 60.0, level) if source else []:
         display = shown(part, (SKINS if is_skin else SECTIONS)[name])
@@ -180,15 +180,19 @@ note = Show(Text(Text="\n".join(words)), view)
 note.Color, note.FontSize = INK, 18
 note.WindowLocation, note.Justification = "Lower Left Corner", "Left"
 
-# From before the cut and above the rail, a little from the gauge side; as wide as a wheel.
+# Upright, whatever the contact angle: from before the cut and above the rail, a little from the gauge side; as wide as a wheel.
 if picture:
     view.ViewSize = [1600, 900]
 # The first rendering would move the camera.
 Render(view)
-direction = [-0.35, -0.80, 0.46]
-view.CameraFocalPoint = [(bounds[0] + bounds[1]) / 2, bounds[2], (bounds[4] + bounds[5]) / 2]
-view.CameraPosition = [c + max(6.0 * size, 155.0) * d for c, d in zip(view.CameraFocalPoint, direction)]
-view.CameraViewUp = [0, 0, 1]
+up = place[2][:3]
+across = [(1.0 if k == 0 else 0.0) - up[0] * up[k] for k in range(3)]
+along = [(1.0 if k == 1 else 0.0) - up[1] * up[k] for k in range(3)]
+direction = [-0.33 * across[k] - 0.82 * along[k] + 0.44 * up[k] for k in range(3)]
+middle = [(bounds[2 * k] + bounds[2 * k + 1]) / 2 for k in range(3)]
+view.CameraFocalPoint = [middle[k] + 0.4 * (bounds[2] - middle[1]) * along[k] + 4.0 * up[k] for k in range(3)]
+view.CameraPosition = [c + max(7.0 * size, 195.0) * d for c, d in zip(view.CameraFocalPoint, direction)]
+view.CameraViewUp = up
 view.CenterOfRotation = view.CameraFocalPoint
 Render(view)
 if picture:

@@ -22,6 +22,7 @@ import json, pathlib, sys
 from math import sqrt as fsqrt, sin as fsin, cos as fcos, tan as ftan, radians
 
 HERE = pathlib.Path(__file__).parent
+FOLDER = HERE.parents[1] / "crates/report/src/hard_cases"
 sys.path.insert(0, str(HERE.parent / "reference"))
 from reference import M, boundary_eta, mp, mpf, separation, sqrt
 
@@ -348,5 +349,5 @@ def pretty(key, value):
 
 if __name__ == "__main__":
     for name in sys.argv[1:] or CASES:
-        (HERE / f"{name}.json").write_text(solve(name))
+        (FOLDER / f"{name}.json").write_text(solve(name))
         print(name, file=sys.stderr)

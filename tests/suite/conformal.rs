@@ -60,7 +60,8 @@ fn closest_distances_agree_with_the_normal_gap_of_every_scene() {
 
 #[test]
 fn every_file_of_values_is_embedded() {
-    let files = std::fs::read_dir(folder("reference_conformal")).expect("the folder of reference values");
+    let files = std::fs::read_dir(folder("../crates/report/src/conformal/reference"))
+        .expect("the folder of reference values");
     let paths = files.map(|entry| entry.expect("a file").path());
     let mut on_disk: Vec<_> = paths.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
     on_disk.sort();

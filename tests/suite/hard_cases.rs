@@ -1,4 +1,4 @@
-//! Every file of `tests/hard_cases` against its 60-digit values and its status.
+//! Every file of `crates/report/src/hard_cases` against its 60-digit values and its status.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -57,7 +57,7 @@ fn no_bound_is_slack() {
 
 #[test]
 fn every_file_is_embedded() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hard_cases");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/report/src/hard_cases");
     let entries = std::fs::read_dir(folder).expect("the folder of hard cases");
     let on_disk: BTreeSet<String> = entries
         .filter_map(|entry| {

@@ -153,7 +153,7 @@ impl HardCase {
 }
 
 /// Names and texts of the files of the hard cases.
-pub const FILES: &[(&str, &str)] = embedded!("../../../tests/hard_cases/":
+pub const FILES: &[(&str, &str)] = embedded!("hard_cases/":
     "within_one_nanometre_of_c", "conforming_to_1e-9", "radius_of_one_kilometre", "flange_at_70_degrees",
     "contact_on_a_joint", "contact_on_a_kink", "contact_at_a_profile_end", "curvature_jump_under_the_window",
     "columns_cross_one_joint", "columns_cross_two_joints", "rail_overhangs", "wheel_overhangs",

@@ -3,7 +3,7 @@
 //!
 //! [`mod@reference`] reads the 60-digit files, which are part of the program; [`errors`] compares a method with them.
 //! [`speed`] races methods against a plain store of the same array, [`spline_cost`] splines against arcs. [`hard_case`]
-//! runs the cases of `tests/hard_cases`; [`verification`] checks placed pairs by parry3d's meshes. [`measured`] compares
+//! runs the cases of `hard_cases`; [`verification`] checks placed pairs by parry3d's meshes. [`measured`] compares
 //! curves through points with the drawing from which the points come; [`specimen`] makes worn profiles as instruments
 //! measure them. [`rates`] counts positions of a wheelset a second over them, [`loads`] compares approaches under load with
 //! solved ones, [`whole_case`] times a case from first touch to its mesh, [`conformal`] measures the normal gap,

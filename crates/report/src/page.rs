@@ -314,7 +314,7 @@ fn hard_cases(m: &Measurements) -> PageSection {
     let rows: Vec<Vec<String>> = m.hard_cases.iter().map(hard_case).collect();
     let head = ["case", "status", "as stated", "spectral, mm", "pointwise, mm", "report-newton, mm", "why"];
     let body = format!(
-        "Files of `tests/hard_cases`: largest error where there is a value, and in brackets the number of points \
+        "Files of `crates/report/src/hard_cases`: largest error where there is a value, and in brackets the number of points \
          where there wrongly is one or none. The last column is about the Report's method.\n\n{}\n\
          All figures: [hard_cases.csv](hard_cases.csv).\n",
         markdown(&head, 7, &rows)

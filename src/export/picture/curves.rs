@@ -3,8 +3,8 @@
 use super::page::{BLUE, Colour, Page, Pen, RED, SMALL, polygon};
 use super::panel::{Panel, airy, range};
 
-/// Colours of the curves of a panel, in order.
-const COLOURS: [Colour; 2] = [BLUE, RED];
+/// Colours and widths of the curves of a panel, in order. The first is wider, so that it is seen where the second covers it.
+const CURVES: [(Colour, f64); 2] = [(BLUE, 2.8), (RED, 1.4)];
 
 /// Left edges of the two columns of panels \[page units\].
 const LEFT: [f64; 2] = [90.0, 540.0];
@@ -142,8 +142,8 @@ impl CurvesPicture {
         let least = (1e-6 * low.abs().max(high.abs())).max(1e-9);
         let panel = Panel { place, u, v: airy([low, high], 0.06, least) };
         panel.zero_line(page);
-        for (k, (curve, colour)) in quantity.curves.iter().zip(COLOURS).enumerate() {
-            let pen = Pen::new(colour, 1.6);
+        for (k, (curve, (colour, width))) in quantity.curves.iter().zip(CURVES).enumerate() {
+            let pen = Pen::new(colour, width);
             let parted = curve.parted();
             page.lines(&panel.curve(&parted), pen);
             page.area(&dots(&panel, &parted), colour);

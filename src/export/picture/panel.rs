@@ -121,6 +121,7 @@ impl Panel {
         for (px, label) in labelled(&below) {
             page.text([*px, y + h + 18.0], label, SMALL.middle());
         }
+        let widest = left.iter().map(|(_, label)| width(label)).fold(0.0, f64::max);
         for (value, label) in left {
             let [_, py] = self.point([self.u[0], value]);
             ticks.push(vec![[x, py], [x - 5.0, py]]);
@@ -128,7 +129,8 @@ impl Panel {
         }
         page.lines(&ticks, FRAME);
         page.text([x + w / 2.0, y + h + 36.0], names[0], BODY.middle());
-        page.upright([x - 46.0, y + h / 2.0], names[1], BODY.middle());
+        // Clear of the longest number, whose end is 8 from the frame; 5 for what hangs below the letters.
+        page.upright([x - widest.max(33.0) - 13.0, y + h / 2.0], names[1], BODY.middle());
     }
 
     /// Writes a value of its own at the ticks of u, above the frame, and the name of these values to the left of them.
@@ -253,14 +255,6 @@ const LADDER: usize = 6;
 /// Returns the ticks, given with their places along u \[page units\], that have a label: all, or every second or third and so on
 /// where the labels do not fit beside each other otherwise. At least two are left.
 fn labelled(ticks: &[(f64, String)]) -> impl Iterator<Item = &(f64, String)> {
-    let width = |label: &str| {
-        let letter = |c| match c {
-            '.' => POINT,
-            '\u{2212}' => MINUS,
-            _ => DIGIT,
-        };
-        SMALL.size * label.chars().map(letter).sum::<f64>()
-    };
     let fits = |stride: &usize| {
         let some: Vec<_> = ticks.iter().step_by(*stride).collect();
         some.windows(2)
@@ -268,6 +262,16 @@ fn labelled(ticks: &[(f64, String)]) -> impl Iterator<Item = &(f64, String)> {
     };
     let stride = (1..ticks.len()).find(fits).unwrap_or(ticks.len().saturating_sub(1).max(1));
     ticks.iter().step_by(stride)
+}
+
+/// Returns the width of a number on an axis \[page units\].
+fn width(label: &str) -> f64 {
+    let letter = |c| match c {
+        '.' => POINT,
+        '\u{2212}' => MINUS,
+        _ => DIGIT,
+    };
+    SMALL.size * label.chars().map(letter).sum::<f64>()
 }
 
 fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {

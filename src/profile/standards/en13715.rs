@@ -1,4 +1,7 @@
 //! The wheels of EN 13715:2020 by its formulas: a tread, a flange height, a flange thickness and an outer slope make one.
+//!
+//! A flange thinner than 32.5 mm has edges in the standard itself: the arcs of 12 mm before and behind its tip, RI and RE, have their
+//! centres apart and meet in its point S, and the tread has a straight line from T1 to D0.
 
 use std::ops::RangeInclusive;
 
@@ -101,7 +104,7 @@ impl Wheel<'_> {
         Profile::new(name, SOURCE, segments)
     }
 
-    /// The back of the flange, up to its tip, where a thinner one has a kink.
+    /// The back of the flange, up to the standard's point S, where a thinner one has an edge of 2 asin((32.5 − e)/24).
     fn back(&self, thinner: f64) -> Vec<SegmentData> {
         let height = self.flange.height;
         vec![
@@ -218,6 +221,30 @@ mod tests {
                 let profile = wheel(&name)?;
                 let moved = profile.largest_closing().map_or(0.0, |(largest, _)| largest.moved);
                 assert!(moved < 1e-3, "{name}: {moved}");
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn thin_flanges_have_the_edges_of_the_standard_and_no_other() -> Result<()> {
+        // How far S is below the flange's height, as the standard tabulates it.
+        for (thickness, lower) in [("31.5", 0.010), ("30.5", 0.042), ("29.5", 0.094), ("28.5", 0.168)] {
+            let thinner: f64 = FULL_THICKNESS - thickness.parse::<f64>().unwrap_or(f64::NAN);
+            let edge = 2.0 * (thinner / 24.0).asin();
+            for (tread, height) in [("1:40", 28.0), ("S1002", 30.0), ("S1002", 32.0)] {
+                let name = format!("EN13715-{tread}-h{height}-e{thickness}");
+                let profile = wheel(&name)?;
+                let at_tip = -55.0 - thinner / 2.0;
+                let tip = Section::own_axes(&profile, Side::Wheel).height(at_tip);
+                assert!((tip + height - lower).abs() < 1e-3, "{name}: {tip}");
+                for joint in profile.continuity().iter().filter(|joint| joint.kink.abs() > 1e-9) {
+                    // S, T1, D0; B1 and the chamfer.
+                    let named = [at_tip, -0.5 - thinner, 0.0, 32.158, 35.0, ENDS[0]];
+                    assert!(named.iter().any(|x| (x - joint.x).abs() < 0.02), "{name}: {joint:?}");
+                    let is_tip = (joint.x - at_tip).abs() < 1e-6;
+                    assert!(!is_tip || (joint.kink - edge).abs() < 1e-9, "{name}: {joint:?} {edge}");
+                }
             }
         }
         Ok(())

@@ -160,7 +160,7 @@ impl GapReference {
 }
 
 /// Names and texts of the files.
-pub const FILES: &[(&str, &str); 11] = embedded!("../../../../tests/reference_conformal/":
+pub const FILES: &[(&str, &str); 11] = embedded!("reference/":
     "60E1_S1002_root", "corner_13_root_13.5", "corner_13_root_14", "corner_13_root_15", "corner_at_45", "equal_to_1e-9",
     "measured_corner", "two_joints", "yawed_60E1_S1002_root", "yawed_corner_13_root_14", "yawed_measured_corner",
 );
