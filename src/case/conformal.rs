@@ -100,9 +100,13 @@ pub(super) fn turning_warning(
     } else {
         format!("along the rail's own {t:.4e} mm ({:+.1} %)", 100.0 * (s - t) / t)
     };
+    let advice = match placement.lofted() {
+        Some(_) => "the gap along that normal is not available on a rail that varies",
+        None => "a conformal solver needs grid.reference = \"rail\"",
+    };
     Some(format!(
         "the rail's normal turns by {:.1} degrees within the patch: at xi = {:.3} mm the gap along the fixed normal is {s:.4e} mm, \
-         {own}; a conformal solver needs grid.reference = \"rail\"",
+         {own}; {advice}",
         turn.to_degrees(),
         at.xi,
     ))

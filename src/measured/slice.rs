@@ -79,7 +79,11 @@ impl<'a> Cut<'a> {
         }
         let Some(given) = given else {
             let found = format!("no `{key}` for {} slices", list.slices.len());
-            return Err(Error::new(key, found, range, format!("give `{key}`, in {unit}")));
+            let surface = match list.side {
+                Side::Rail => "; in [wheelset] it places a wheelset on all of them",
+                Side::Wheel => "; `wheelrail march` takes all of them",
+            };
+            return Err(Error::new(key, found, range, format!("give `{key}`, in {unit}{surface}")));
         };
         let mut at = finite(key, given)?;
         let asked = if list.side == Side::Wheel { around(at) } else { at };

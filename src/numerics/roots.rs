@@ -55,8 +55,9 @@ const MOST_SECANTS: usize = 8;
 pub fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enough: f64) -> Option<f64> {
     let bounds = [last.min(at), last.max(at)];
     let (mut before, mut value) = (f(last), f(at));
-    // NaN is refused, too.
-    if !(before * value < 0.0) {
+    // Not those of NaN, either.
+    let opposite = before * value < 0.0;
+    if !opposite {
         return None;
     }
     for _ in 0..MOST_SECANTS {
