@@ -282,7 +282,7 @@ fn a_list_without_features_ends_where_its_slices_do_not_correspond() -> Result<(
 }
 
 /// The cases of the reference file, one group after another.
-fn cases() -> Vec<Value> {
+pub(super) fn cases() -> Vec<Value> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference_along/along_track.json");
     let file: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     file["cases"].as_array().unwrap().clone()
@@ -290,18 +290,23 @@ fn cases() -> Vec<Value> {
 
 /// A march of a case over the profiles of a copy of CONTACT.
 fn march_of(profiles: &Path, case: &Value, surface: &str) -> Result<March> {
+    let scene: Scene = scene::parse(&scene_of(case, surface, ""), false)?;
+    scene::march(&scene, profiles).map(|(march, _)| march)
+}
+
+/// The scene of a case, with more keys of [wheelset].
+pub(super) fn scene_of(case: &Value, surface: &str, more: &str) -> String {
     let rail = case["rail"].as_str().unwrap();
     let wheel = case["wheel"].as_str().unwrap();
     let metres = if rail.starts_with("uk_") { "unit = \"m\"\nflip_z = true\nmirror = false" } else { "" };
     let [lateral, yaw, roll] = ["y", "yaw", "roll"].map(|key| case[key].as_f64().unwrap());
-    let text = format!(
+    format!(
         "[rail]\nfile = {rail:?}\nsurface = {surface:?}\ncurve = \"interpolation\"\n{metres}\n\
          [wheel]\nfile = {wheel:?}\ncurve = \"interpolation\"\nradius = 460.0\n\
          [track]\nspacing = 1500.0\n\
-         [wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = {lateral}\nyaw = {yaw}\nroll = {roll:?}\n"
-    );
-    let scene: Scene = scene::parse(&text, false)?;
-    scene::march(&scene, profiles).map(|(march, _)| march)
+         [wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = {lateral}\nyaw = {yaw}\nroll = {roll:?}\n\
+         {more}"
+    )
 }
 
 /// Height of the axle's middle when the right-hand wheel touches, down as CONTACT's \[mm\].
