@@ -17,7 +17,7 @@ use super::view::view;
 use crate::error::{Error, Result};
 use crate::export::{
     ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Interval,
-    Loop, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, RollerFields, SurfaceMesh, boundary_csv,
+    Loop, LowerSurface, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
     interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
@@ -141,7 +141,7 @@ fn with_jobs<T>(
     let (axes, mut skipped) = (&part.site.grid, Vec::new());
     let (header, rail, creepages) = (header(run, part), RailColumns::new(part), run.creepages(part)?);
     let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
-    let grid = rail.roller.as_ref().map_or(Ok(grid), |roller| grid.over_roller(roller))?;
+    let grid = rail.surface.as_ref().map_or(Ok(grid), |surface| grid.over_lower_surface(surface))?;
     let pressure = part.analysis.pressure.as_ref().and_then(|found| found.field.as_deref());
     let grid = pressure.map_or(Ok(grid), |pressure| grid.with_pressure(pressure))?;
     let on_rail = part.analysis.conformal.as_ref().map(|conformal| OnRail::new(&part.site, conformal));
@@ -345,7 +345,8 @@ fn rasterise(outputs: &Outputs, png: Option<Rasterise>) -> Result<Option<Rasteri
 struct RailColumns {
     height: Vec<f64>,
     normal: Vec<[f64; 2]>,
-    roller: Option<RollerFields>,
+    /// The surface of a lower body that is not extruded.
+    surface: Option<LowerSurface>,
 }
 
 impl RailColumns {
@@ -359,7 +360,7 @@ impl RailColumns {
                 (Some(bodies.lower_height(xi, 0.0)).filter(|zeta| !zeta.is_nan()).unwrap_or(0.0), normal)
             };
             let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = part.site.grid.xi.iter().map(column).unzip();
-            return Self { roller: Self::roller(part, &height), height, normal };
+            return Self { surface: Self::surface(part, &height), height, normal };
         }
         let section = &placement.rail().section;
         let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
@@ -367,18 +368,18 @@ impl RailColumns {
         let columns =
             part.site.grid.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
         let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = columns.unzip();
-        Self { roller: Self::roller(part, &height), height, normal }
+        Self { surface: Self::surface(part, &height), height, normal }
     }
 
     /// Computes the surface of a roller, or of a rail that varies along the track, over the grid; `None` for an extruded rail.
-    fn roller(part: &Part, height: &[f64]) -> Option<RollerFields> {
+    fn surface(part: &Part, height: &[f64]) -> Option<LowerSurface> {
         let placement = &part.site.contact.placement;
         if placement.under().is_none() && placement.lofted().is_none() {
             return None;
         }
         let mut bodies = Evaluator::new(placement);
         let mut evaluator = placement.under().map(Evaluator::new);
-        let mut fields = RollerFields::default();
+        let mut fields = LowerSurface::default();
         for (&xi, height) in part.site.grid.xi.iter().zip(height) {
             for &eta in &part.site.grid.eta {
                 let normal = bodies.normals(xi, eta).rail;

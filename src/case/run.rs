@@ -180,6 +180,25 @@ impl Part {
     }
 }
 
+/// Distance along the track \[mm\] up to which a patch reaches a slice: a point of it lies some tenths of a millimetre above or below the
+/// tangent plane, which pitches by a tenth at most.
+const AT_SLICE: f64 = 0.1;
+
+/// Says that a patch reaches the first or the last slice of a rail that varies along the track, beyond which there is no surface.
+fn slices_warning(site: &Site, patch: &Patch) -> Option<String> {
+    let lofted = site.contact.placement.lofted()?;
+    let [from, to] = lofted.loft().reach();
+    let along = patch.extent()?.eta.map(|eta| lofted.origin()[1] + lofted.axes()[1][1] * eta);
+    let end = match along {
+        [behind, _] if behind <= from + AT_SLICE => from,
+        [_, ahead] if ahead >= to - AT_SLICE => to,
+        _ => return None,
+    };
+    Some(format!(
+        "the patch reaches the end of the slices at {end} mm: it is cut off there, and pressures are too large; list more slices"
+    ))
+}
+
 /// Lists what a user should know before using the files of a part; `other` is the lift of the other wheel \[mm\].
 fn warnings_of(site: &Site, analysis: &Analysis, (landmarks, other): (&SideLandmarks, f64)) -> Vec<String> {
     let mut out = Vec::from_iter(site.grid.warning.clone());
@@ -187,6 +206,7 @@ fn warnings_of(site: &Site, analysis: &Analysis, (landmarks, other): (&SideLandm
         out.push("the window of the grid cuts the patch: solvers would overestimate the pressure".into());
     }
     let Analysis { patch, conformal, .. } = analysis;
+    out.extend(patch.as_ref().and_then(|patch| slices_warning(site, patch)));
     out.extend(turning_warning(site, patch.as_ref(), conformal.as_ref()));
     let Plan { choice, error, tolerance, .. } = &analysis.plan;
     if error.is_nan() {

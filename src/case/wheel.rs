@@ -10,7 +10,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::input::FrameOrigin;
 use super::overlaps::{Overlap, RegionRules, overlaps};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
 use crate::lofted::Loft;
 use crate::mesh::groups;
@@ -59,18 +59,21 @@ pub(super) struct Wheel<'a> {
 struct Reached {
     /// (x, z) on the rail \[mm\].
     rail: Point2<f64>,
-    /// As the search found it; `None` for chosen points.
-    found: Option<search::Contact>,
+    placing: Placing,
     /// Vertical gap at first touch \[mm\].
     gap: f64,
     /// Cosine of the angle between its normal and the vertical.
     cos: f64,
-    /// The pair placed there, once it was asked for.
-    placement: Option<Arc<Placement>>,
     /// Where C lies along the rail \[mm\], in the list's coordinate on one that varies.
     y: f64,
     /// The pressures of its groups of parts under the last approach.
     known: Vec<Pressures>,
+}
+
+/// A place as a search found it, until the pair placed there is asked for.
+enum Placing {
+    Found(search::Contact),
+    Placed(Arc<Placement>),
 }
 
 /// The parts of a patch that are one contact.
@@ -160,10 +163,9 @@ impl<'a> Wheel<'a> {
     ) -> Self {
         let reached = |place: &search::Contact| Reached {
             rail: Point2::new(place.rail_x, place.rail_z),
-            found: Some(*place),
+            placing: Placing::Found(*place),
             gap: place.gap,
             cos: place.contact_angle.cos() * place.turn.cos(),
-            placement: None,
             y: place.y + on.map_or(0.0, |on| on.from),
             known: Vec::new(),
         };
@@ -175,10 +177,9 @@ impl<'a> Wheel<'a> {
         let Station { x, z, .. } = placement.rail().point.station;
         let place = Reached {
             rail: Point2::new(x, z),
-            found: None,
             gap: 0.0,
             cos: placement.upright(),
-            placement: Some(Arc::new(placement)),
+            placing: Placing::Placed(Arc::new(placement)),
             y: 0.0,
             known: Vec::new(),
         };
@@ -244,16 +245,12 @@ impl<'a> Wheel<'a> {
     }
 
     fn placement(&mut self, index: usize) -> Result<Arc<Placement>> {
-        let place = &mut self.places[index];
-        let placement = match (place.placement.take(), &place.found) {
-            (Some(placement), _) => placement,
-            (None, Some(found)) => Arc::new(placed_at(found, self.pair, self.on)?),
-            (None, None) => {
-                let expected = "a placed pair";
-                return Err(Error::new("contact", "chosen points without one", expected, "place it"));
-            }
+        let placement = match &self.places[index].placing {
+            Placing::Placed(placement) => Arc::clone(placement),
+            Placing::Found(found) => Arc::new(placed_at(found, self.pair, self.on)?),
         };
-        Ok(Arc::clone(place.placement.insert(placement)))
+        self.places[index].placing = Placing::Placed(Arc::clone(&placement));
+        Ok(placement)
     }
 
     /// Finds the regions under an approach of the first place with the normal forces that they carry.

@@ -110,14 +110,15 @@ pub struct GridFields<'a> {
     separation: &'a [f64],
     rail_height: &'a [f64],
     rail_normal: &'a [[f64; 2]],
-    roller: Option<&'a RollerFields>,
+    surface: Option<&'a LowerSurface>,
     pressure: Option<&'a [f64]>,
 }
 
-/// The surface of a roller over a grid, at `i_xi * n_eta + i_eta`.
+/// The surface of a lower body that is not extruded, a roller or a rail that varies along the track, over a grid: at
+/// `i_xi * n_eta + i_eta`.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct RollerFields {
-    /// How far the roller lies below its profile along ζ \[mm\]; NaN where it has no surface.
+pub struct LowerSurface {
+    /// How far it lies below the rail height of its ξ along ζ \[mm\]; NaN where it has no surface.
     pub fall: Vec<f64>,
     /// Outward (upward) unit normals (ξ, η, ζ).
     pub normal: Vec<[f64; 3]>,
@@ -150,17 +151,17 @@ impl<'a> GridFields<'a> {
         if separation.is_empty() {
             return Err(Error::new("grid", "no points", "at least one", "give xi and eta values"));
         }
-        Ok(Self { xi, eta, separation, rail_height, rail_normal, roller: None, pressure: None })
+        Ok(Self { xi, eta, separation, rail_height, rail_normal, surface: None, pressure: None })
     }
 
-    /// Returns the fields over a roller with this profile.
+    /// Returns the fields over a lower body that is not extruded.
     ///
     /// # Errors
     /// Lengths that do not agree.
-    pub fn over_roller(self, roller: &'a RollerFields) -> Result<Self> {
-        same_length("falls of the roller", roller.fall.len(), self.separation.len())?;
-        same_length("normals of the roller", roller.normal.len(), self.separation.len())?;
-        Ok(Self { roller: Some(roller), ..self })
+    pub fn over_lower_surface(self, surface: &'a LowerSurface) -> Result<Self> {
+        same_length("falls of the lower body", surface.fall.len(), self.separation.len())?;
+        same_length("normals of the lower body", surface.normal.len(), self.separation.len())?;
+        Ok(Self { surface: Some(surface), ..self })
     }
 
     /// Returns the fields with the pressures \[N/mm²\] at their points, at `i_xi * n_eta + i_eta`.
@@ -197,7 +198,7 @@ impl<'a> GridFields<'a> {
         &self.separation[i * self.eta.len()..(i + 1) * self.eta.len()]
     }
 
-    /// Returns ζ^R(ξ) \[mm\] of the rail or of a roller's profile, NaN where there is no surface.
+    /// Returns ζ^R(ξ) \[mm\] of the rail at η = 0, NaN where there is no surface.
     pub fn rail_height(&self) -> &'a [f64] {
         self.rail_height
     }
@@ -205,18 +206,18 @@ impl<'a> GridFields<'a> {
     /// Returns the points \[ξ, η, ζ^R\] \[mm\] of the surface of rail or roller under the column of ξ number `i`. ζ is 0 where
     /// there is no surface, because a point must have coordinates.
     pub(super) fn rail_points(&self, i: usize) -> impl Iterator<Item = [f64; 3]> + 'a {
-        let (xi, zeta, roller) = (self.xi[i], self.rail_height[i], self.roller);
+        let (xi, zeta, surface) = (self.xi[i], self.rail_height[i], self.surface);
         let first = i * self.eta.len();
-        let fall = move |j: usize| roller.map_or(0.0, |roller| roller.fall[first + j]);
+        let fall = move |j: usize| surface.map_or(0.0, |surface| surface.fall[first + j]);
         self.eta.iter().enumerate().map(move |(j, &eta)| [xi, eta, known(zeta - fall(j))])
     }
 
     /// Returns the outward unit normals (ξ, η, ζ) of rail or roller along the column of ξ number `i`.
     pub(super) fn lower_normals(&self, i: usize) -> impl Iterator<Item = [f64; 3]> + 'a {
-        let ([n_xi, n_zeta], roller) = (self.rail_normal[i], self.roller);
+        let ([n_xi, n_zeta], surface) = (self.rail_normal[i], self.surface);
         let first = i * self.eta.len();
         (0..self.eta.len())
-            .map(move |j| roller.map_or([n_xi, 0.0, n_zeta], |roller| roller.normal[first + j]))
+            .map(move |j| surface.map_or([n_xi, 0.0, n_zeta], |surface| surface.normal[first + j]))
     }
 
     /// Returns the mask along the column of ξ number `i`: 1 where s is defined, 0 elsewhere.

@@ -5,7 +5,6 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::joining::Joining;
-use super::section;
 use super::strip::{Interval, Strip};
 use crate::error::{Error, ErrorKind, Result};
 use crate::profile::{Mark, Profile, trace};
@@ -99,15 +98,6 @@ impl Loft {
     /// Positions of the first and of the last slice \[mm\].
     pub fn reach(&self) -> [f64; 2] {
         self.reach
-    }
-
-    /// Returns the section at y \[mm\] through one of the strips, as far as its neighbours join it: exactly the cut of the surface, one
-    /// cubic a cell.
-    ///
-    /// # Errors
-    /// A place where the strip has no surface.
-    pub fn section(&self, strip: usize, y: f64) -> Result<Profile> {
-        section::section(&self.strips, strip, y)
     }
 
     /// Returns the index of the strip with most cells at y \[mm\], the running rail's in most cases; `None` where there is none.

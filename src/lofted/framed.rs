@@ -82,6 +82,14 @@ pub struct LoftFoot {
     steps: [[f64; 2]; 2],
 }
 
+/// Feet of lines close to each other, each found from the one before.
+#[derive(Debug)]
+pub struct Feet<'a> {
+    rail: &'a FramedLoft,
+    /// The last foot, and its (ξ, η) \[mm\].
+    last: Option<(LoftFoot, [f64; 2])>,
+}
+
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -91,7 +99,7 @@ impl FramedLoft {
     /// (−sinθ cosν, sinν, cosθ cosν).
     ///
     /// # Errors
-    /// None for numbers.
+    /// None; those of making a profile of the tangent plane.
     pub fn new(loft: Arc<Loft>, origin: [f64; 3], theta: f64, ahead: f64) -> crate::error::Result<Self> {
         let ((sin, cos), (rise, run)) = (theta.sin_cos(), ahead.sin_cos());
         let axes = [[cos, 0.0, sin], [rise * sin, run, -rise * cos], [-sin * run, rise, cos * run]];
@@ -130,37 +138,29 @@ impl FramedLoft {
         self.axes.map(|axis| dot(axis, from))
     }
 
-    /// Finds the foot at (ξ, η) \[mm\]; `None` where the rail has no surface that faces the wheel. `near` is a foot close by, if one is
-    /// known.
+    /// Finds the foot at (ξ, η) \[mm\]; `None` where the rail has no surface that faces the wheel.
     ///
     /// Where a line meets several sheets, that nearest to the tangent plane counts, or one up to 10 mm in front of it: what stands farther
-    /// in front belongs to another head. Accuracy: 1e-12 mm on rails of usual size.
-    pub fn foot(&self, xi: f64, eta: f64, near: Option<(&LoftFoot, [f64; 2])>) -> Option<LoftFoot> {
-        let middle = ((self.axes[1][1] * eta) / LEVEL).round() as i64;
+    /// in front belongs to another head. Accuracy: ζ within 1e-12 mm and slopes within 1e-10 on rails of usual size.
+    pub fn foot(&self, xi: f64, eta: f64) -> Option<LoftFoot> {
+        let middle = self.nearest_level(eta);
         let alone = self.is_alone(xi, middle);
-        let near = near.filter(|(_, step)| alone && step[0].abs() <= CLOSE && step[1].abs() <= CLOSE);
-        let beside = near.and_then(|(near, step)| self.settle(near.strip, near.moved(step), xi, eta));
-        if beside.is_some() {
-            return beside;
-        }
-        let (mut found, mut count) = ([None; MOST_SHEETS], 0);
+        let mut feet: Vec<LoftFoot> = Vec::new();
         for level in [middle, middle - 1, middle + 1] {
-            if alone && count > 0 {
+            if alone && !feet.is_empty() {
                 break;
             }
             for run in self.level(level).iter().filter(|run| run.holds(xi)) {
                 let y = self.origin[1] + LEVEL * level as f64;
-                let reach = self.loft.strips[run.strip].reach();
-                let guess = [run.place(xi), y.clamp(reach[0], reach[1])];
-                let Some(foot) = self.settle(run.strip, guess, xi, eta) else { continue };
-                let known = |other: &LoftFoot| (other.zeta - foot.zeta).abs() <= ROUNDING;
-                if count < MOST_SHEETS && !found[..count].iter().flatten().any(known) {
-                    found[count] = Some(foot);
-                    count += 1;
+                let [from, to] = self.loft.strips[run.strip].reach();
+                let Some(foot) = self.settle(run.strip, [run.place(xi), y.clamp(from, to)], xi, eta) else {
+                    continue;
+                };
+                if feet.iter().all(|other| (other.zeta - foot.zeta).abs() > ROUNDING) {
+                    feet.push(foot);
                 }
             }
         }
-        let mut feet: Vec<LoftFoot> = found.into_iter().flatten().collect();
         feet.sort_by(|a, b| a.zeta.total_cmp(&b.zeta));
         let own = (0..feet.len()).min_by(|&a, &b| feet[a].zeta.abs().total_cmp(&feet[b].zeta.abs()))?;
         let front =
@@ -168,14 +168,9 @@ impl FramedLoft {
         Some(feet[front.unwrap_or(own)])
     }
 
-    /// Writes ζ \[mm\] at all η \[mm\] of one column; NaN where the rail has no surface.
-    pub fn column(&self, xi: f64, eta: &[f64], out: &mut [f64]) {
-        let mut last: Option<(LoftFoot, f64)> = None;
-        for (out, &eta) in out.iter_mut().zip(eta) {
-            let foot = self.foot(xi, eta, last.as_ref().map(|(foot, at)| (foot, [0.0, eta - at])));
-            *out = foot.map_or(f64::NAN, |foot| foot.zeta);
-            last = foot.map(|foot| (foot, eta));
-        }
+    /// Number of the section nearest to η \[mm\], in steps from C.
+    fn nearest_level(&self, eta: f64) -> i64 {
+        (self.axes[1][1] * eta.clamp(-FARTHEST, FARTHEST) / LEVEL).round() as i64
     }
 
     /// The point of the surface at a foot.
@@ -185,7 +180,7 @@ impl FramedLoft {
 
     /// ∂²ζ/∂ξ², ∂²ζ/∂ξ∂η and ∂²ζ/∂η² at C \[1/mm\]; `None` without a surface there.
     pub fn bends(&self) -> Option<[f64; 3]> {
-        let foot = self.foot(0.0, 0.0, None)?;
+        let foot = self.foot(0.0, 0.0)?;
         let p = self.point(&foot);
         let up = |v: [f64; 2]| dot(self.axes[2], [v[0], 0.0, v[1]]);
         let (l, m, n) = (up(p.across2), up(p.mixed), up(p.along2));
@@ -250,8 +245,7 @@ impl FramedLoft {
 
     /// The range of ξ \[mm\] over which the surface faces the wheel between two η \[mm\]; `None` if it does so nowhere.
     pub fn reach(&self, eta: [f64; 2]) -> Option<[f64; 2]> {
-        let [from, to] =
-            eta.map(|eta| (self.axes[1][1] * eta.clamp(-FARTHEST, FARTHEST) / LEVEL).round() as i64);
+        let [from, to] = eta.map(|eta| self.nearest_level(eta));
         let runs = (from..=to).flat_map(|level| self.level(level));
         let reach = runs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], run| {
             [low.min(run.xi[0]), high.max(run.xi[run.xi.len() - 1])]
@@ -291,13 +285,33 @@ impl FramedLoft {
     }
 }
 
-/// Most sheets on one line that are told apart.
-const MOST_SHEETS: usize = 8;
-
 /// Whether a place lies on a strip.
 fn on(strip: &Strip, [u, y]: [f64; 2]) -> bool {
     let [from, to] = strip.reach();
     u >= -ROUNDING && u <= strip.cells() as f64 + ROUNDING && y >= from - ROUNDING && y <= to + ROUNDING
+}
+
+impl<'a> Feet<'a> {
+    /// Begins without a foot.
+    pub fn new(rail: &'a FramedLoft) -> Self {
+        Self { rail, last: None }
+    }
+
+    /// Finds the foot at (ξ, η) \[mm\], as [`FramedLoft::foot`] does.
+    pub fn at(&mut self, xi: f64, eta: f64) -> Option<LoftFoot> {
+        let near = self.last.as_ref().map(|(foot, at)| (foot, [xi - at[0], eta - at[1]]));
+        let near = near.filter(|(_, step)| step.iter().all(|step| step.abs() <= CLOSE));
+        let near = near.filter(|_| self.rail.is_alone(xi, self.rail.nearest_level(eta)));
+        let beside = near.and_then(|(foot, step)| self.rail.settle(foot.strip, foot.moved(step), xi, eta));
+        let foot = beside.or_else(|| self.rail.foot(xi, eta))?;
+        self.last = Some((foot, [xi, eta]));
+        Some(foot)
+    }
+
+    /// Computes ζ(ξ, η) \[mm\]; NaN where the rail has no surface that faces the wheel.
+    pub fn height(&mut self, xi: f64, eta: f64) -> f64 {
+        self.at(xi, eta).map_or(f64::NAN, |foot| foot.zeta)
+    }
 }
 
 impl LoftFoot {

@@ -30,6 +30,7 @@ pub(crate) use around::turned;
 pub use around::{Flat, LoftedWheel};
 pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, SPACING, Slice};
-pub use framed::{FramedLoft, LoftFoot};
+pub use framed::{Feet, FramedLoft, LoftFoot};
 pub use joining::Joining;
+pub use section::section;
 pub use strip::{Interval, Strip};

@@ -1,19 +1,22 @@
 //! The section of a lofted surface across the track.
 
+use super::build::Loft;
 use super::strip::Strip;
 use crate::error::{Error, Result};
 use crate::profile::{Polynomial, Profile, Segment, Shape};
 
-/// Makes the section at y \[mm\] through one of the strips, as far as its neighbours join it.
+/// Returns the section at y \[mm\] through one of the strips, as far as its neighbours join it: exactly the cut of the surface, one
+/// cubic a cell.
 ///
 /// # Errors
 /// A place where the strip has no surface.
-pub(super) fn section(strips: &[Strip], strip: usize, y: f64) -> Result<Profile> {
+pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
+    let strips = &loft.strips;
     let here = |k: usize| (strips[k].reach()[0]..=strips[k].reach()[1]).contains(&y);
     if !here(strip) {
         let [from, to] = strips[strip].reach();
         let expected = format!("a place from {from} to {to} mm, where this part of the rail is");
-        return Err(Error::new("along", format!("{y} mm"), expected, "choose another place"));
+        return Err(Error::new("along", format!("{y:?} mm"), expected, "choose another place"));
     }
     let beside = |part: Option<usize>| {
         part.and_then(|part| (0..strips.len()).find(|&k| strips[k].part == part && here(k)))

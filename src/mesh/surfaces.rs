@@ -116,7 +116,7 @@ impl Surface {
     /// Makes the surface of the part of a rail that varies which C lies on, over its own cells.
     fn lofted(lofted: &FramedLoft, window: &Window) -> Result<Self> {
         let nowhere = || Error::new("surface", "no surface of the rail at C", "one", "choose another place");
-        let foot = lofted.foot(0.0, 0.0, None).ok_or_else(nowhere)?;
+        let foot = lofted.foot(0.0, 0.0).ok_or_else(nowhere)?;
         let strip = &lofted.loft().strips[foot.strip];
         let [first, last] = strip.reach();
         let [along, ahead] = [lofted.origin()[1], lofted.axes()[1][1]];

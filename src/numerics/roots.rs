@@ -74,15 +74,29 @@ pub fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enoug
     None
 }
 
+/// Finds the place between `below`, where `f` < 0, and `above`, where it is not or is NaN, at which that changes, within `enough`: by
+/// [`secant`] steps where `f` is smooth, by bisection where it is not. Of several such places it is any one.
+///
+/// Degenerate: a place next to `below` where `f` is not negative there.
+pub fn change(mut f: impl FnMut(f64) -> f64, [below, above]: [f64; 2], enough: f64) -> f64 {
+    secant(&mut f, [below, above], enough)
+        .unwrap_or_else(|| last_within(|x| f(x) < 0.0, below, above, enough))
+}
+
 /// Finds the last number for which `holds` is true, from `on`, where it is true, towards `off`, where it is false. Of several such
 /// numbers it is any one.
 ///
 /// Method: bisection until `on` and `off` are neighbouring numbers. Evaluations: those of a root in [`bracketed`].
 /// Degenerate: `on` where the two are equal or neighbours, and where one is NaN.
-pub fn last_where(mut holds: impl FnMut(f64) -> bool, mut on: f64, mut off: f64) -> f64 {
+pub fn last_where(holds: impl FnMut(f64) -> bool, on: f64, off: f64) -> f64 {
+    last_within(holds, on, off, 0.0)
+}
+
+/// Does what [`last_where`] does, until `on` and `off` are no more than `enough` apart.
+fn last_within(mut holds: impl FnMut(f64) -> bool, mut on: f64, mut off: f64, enough: f64) -> f64 {
     loop {
         let middle = on + (off - on) / 2.0;
-        if middle == on || middle == off || middle.is_nan() {
+        if middle == on || middle == off || middle.is_nan() || (off - on).abs() <= enough {
             return on;
         }
         if holds(middle) { on = middle } else { off = middle }
@@ -117,6 +131,14 @@ mod tests {
         assert_eq!(bracketed(|x| x - 1.0, 0.0, 1.0), Some(1.0));
         assert_eq!(bracketed(|x| x * x + 1.0, -1.0, 1.0), None);
         assert_eq!(bracketed(|_| f64::NAN, -1.0, 1.0), None);
+    }
+
+    #[test]
+    fn changes_of_sign_are_found_at_roots_and_at_steps() {
+        let at = |f: fn(f64) -> f64| change(f, [0.0, 1.0], 1e-9);
+        assert!((at(|x| x * x - 0.5) - 0.5f64.sqrt()).abs() < 1e-12);
+        assert!((at(|x| if x < 0.3 { -1.0 } else { 5.0 }) - 0.3).abs() < 1e-9);
+        assert!((at(|x| if x < 0.3 { -1.0 } else { f64::NAN }) - 0.3).abs() < 1e-9);
     }
 
     #[test]

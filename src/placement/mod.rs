@@ -4,10 +4,12 @@
 mod along;
 mod motion;
 mod placed;
+mod swept;
 mod track;
 
 pub use motion::{Creepages, Motion, Pitch, Rates};
 #[cfg(feature = "files")]
 pub(crate) use motion::{on_roller, on_varying_rail};
-pub use placed::{Body, Generator, Pair, Placement};
+pub use placed::{Body, Pair, Placement};
+pub use swept::Generator;
 pub use track::{RailDistance, Track, WheelDistance, Wheelset};

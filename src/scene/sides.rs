@@ -10,7 +10,7 @@ use super::profiles::{Resolved, Sources, pair_of, rail_of, wheel_of};
 use super::side_data::SideData;
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result};
-use crate::lofted::Loft;
+use crate::lofted::{Loft, section};
 use crate::numerics::bodies::Bodies;
 use crate::profile::{Profile, Side};
 
@@ -74,12 +74,12 @@ fn varying(
     let loft = loft(data, &folder.join(list)).map_err(|error| error.within(place))?;
     let Some(strip) = loft.widest(along) else {
         let [from, to] = loft.reach();
-        let expected = format!("a place from {from} to {to} mm, where the slices are");
+        let expected = format!("a place from {from} to {to} mm, where the slices join to a surface");
         let place = if scene.wheelset.is_some() { "wheelset: along" } else { "contact: along" };
-        return Err(Error::new(place, format!("{along} mm"), expected, "choose another place"));
+        return Err(Error::new(place, format!("{along:?} mm"), expected, "choose another place"));
     };
     let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
-    let mut section = loft.section(strip, along)?;
+    let mut section = section(&loft, strip, along)?;
     section.name = format!("{name}, {}", section.name);
     Ok(Some((section, Arc::new(loft))))
 }

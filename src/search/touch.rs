@@ -11,7 +11,7 @@ use super::locus::Attitude;
 use super::over_rail::{RailSearch, SearchPair, Work};
 use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, Result, finite};
-use crate::lofted::{FramedLoft, Loft};
+use crate::lofted::{FramedLoft, Loft, section};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 
@@ -331,9 +331,9 @@ impl Contact {
         };
         let origin = [self.rail_x, self.y + from, self.rail_z];
         let framed = FramedLoft::new(Arc::clone(loft), origin, self.contact_angle, self.turn)?;
-        let foot = framed.foot(0.0, 0.0, None).ok_or_else(nowhere)?;
+        let foot = framed.foot(0.0, 0.0).ok_or_else(nowhere)?;
         let [first, last] = loft.strips[foot.strip].reach();
-        let section = loft.section(foot.strip, origin[1].clamp(first, last))?;
+        let section = section(loft, foot.strip, origin[1].clamp(first, last))?;
         let pair = pair.with_rail(section)?;
         // At the end of a part the section may end a rounding before.
         let [low, high] = pair.sections()[0].reach().ok_or_else(nowhere)?;

@@ -5,7 +5,7 @@ use nalgebra::{Unit, Vector3};
 use super::columns::skewed;
 use super::demand::{Demand, FULL_PRECISION};
 use super::relief::Relief;
-use crate::lofted::{FramedLoft, LoftFoot};
+use crate::lofted::{Feet, LoftFoot};
 use crate::numerics::lanes::MANY;
 use crate::placement::Placement;
 
@@ -44,37 +44,15 @@ pub struct Evaluator<'a> {
     upper: Relief<'a>,
     /// The lower profile over a roller, upside down; `None` for a rail.
     lower: Option<Relief<'a>>,
-    /// A rail that varies along the track, over whose tangent plane the wheel's height is known.
-    lofted: Option<Lofted<'a>>,
-}
-
-/// A rail that varies along the track, with the last foot and its (ξ, η) \[mm\], from which the next is found.
-#[derive(Debug)]
-struct Lofted<'a> {
-    rail: &'a FramedLoft,
-    last: Option<(LoftFoot, [f64; 2])>,
-}
-
-impl Lofted<'_> {
-    fn foot(&mut self, xi: f64, eta: f64) -> Option<LoftFoot> {
-        let near = self.last.as_ref().map(|(foot, at)| (foot, [xi - at[0], eta - at[1]]));
-        let foot = self.rail.foot(xi, eta, near);
-        if let Some(foot) = foot {
-            self.last = Some((foot, [xi, eta]));
-        }
-        foot
-    }
-
-    fn height(&mut self, xi: f64, eta: f64) -> f64 {
-        self.foot(xi, eta).map_or(f64::NAN, |foot| foot.zeta)
-    }
+    /// Feet on a rail that varies along the track, over whose tangent plane the wheel's height is known.
+    feet: Option<Feet<'a>>,
 }
 
 impl<'a> Evaluator<'a> {
     /// Makes an evaluator for a placed pair.
     pub fn new(placement: &'a Placement) -> Self {
-        let lofted = placement.lofted().map(|rail| Lofted { rail, last: None });
-        Self { placement, upper: Relief::new(placement), lower: placement.under().map(Relief::new), lofted }
+        let (lower, feet) = (placement.under().map(Relief::new), placement.lofted().map(Feet::new));
+        Self { placement, upper: Relief::new(placement), lower, feet }
     }
 
     /// Computes s(ξ, η) \[mm\], which is negative where the bodies overlap, and NaN where a body has no surface.
@@ -86,8 +64,8 @@ impl<'a> Evaluator<'a> {
     /// 60-digit values. Over a rail that varies along the track it is below 1e-11 mm.
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         let above = self.upper.height(xi, eta);
-        if let Some(lofted) = &mut self.lofted {
-            return above - lofted.height(xi, eta);
+        if let Some(feet) = &mut self.feet {
+            return above - feet.height(xi, eta);
         }
         self.lower.as_mut().map_or(above, |lower| above + lower.height(xi, eta))
     }
@@ -97,8 +75,8 @@ impl<'a> Evaluator<'a> {
         let nowhere = (f64::NAN, [f64::NAN; 2]);
         let Some(point) = self.upper.point(xi, eta) else { return nowhere };
         let (s, [along, across]) = (self.upper.height_at(xi, &point), slopes(self.upper.normal(&point)));
-        if let Some(lofted) = &mut self.lofted {
-            let Some(foot) = lofted.foot(xi, eta) else { return nowhere };
+        if let Some(feet) = &mut self.feet {
+            let Some(foot) = feet.at(xi, eta) else { return nowhere };
             return (s - foot.zeta, [along - foot.slopes[0], across - foot.slopes[1]]);
         }
         let Some(lower) = &mut self.lower else { return (s, [along - self.rail_slope(xi), across]) };
@@ -119,8 +97,8 @@ impl<'a> Evaluator<'a> {
 
     /// Computes ζ(ξ, η) \[mm\] of the lower body; NaN off it. A rail's is [`Self::rail_height`] at every η.
     pub fn lower_height(&mut self, xi: f64, eta: f64) -> f64 {
-        if let Some(lofted) = &mut self.lofted {
-            return lofted.height(xi, eta);
+        if let Some(feet) = &mut self.feet {
+            return feet.height(xi, eta);
         }
         let profile = self.rail_height(xi);
         self.lower.as_mut().map_or(profile, |lower| profile - lower.height(xi, eta))
@@ -128,8 +106,8 @@ impl<'a> Evaluator<'a> {
 
     /// Computes both outward normals at (ξ, η).
     pub fn normals(&mut self, xi: f64, eta: f64) -> Normals {
-        let rail = match (&mut self.lofted, &mut self.lower) {
-            (Some(lofted), _) => lofted.foot(xi, eta).map(|LoftFoot { slopes: [along, ahead], .. }| {
+        let rail = match (&mut self.feet, &mut self.lower) {
+            (Some(feet), _) => feet.at(xi, eta).map(|LoftFoot { slopes: [along, ahead], .. }| {
                 Unit::new_normalize(Vector3::new(-along, -ahead, 1.0))
             }),
             (None, Some(lower)) => lower.point(xi, eta).map(|point| {
@@ -148,8 +126,8 @@ impl<'a> Evaluator<'a> {
     /// Computes s, and the sum of the magnitudes of its terms \[mm\]. Both are NaN off either body.
     pub(super) fn separation_and_size(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let [s, size] = self.upper.height_and_size(xi, eta);
-        if let Some(lofted) = &mut self.lofted {
-            let below = lofted.height(xi, eta);
+        if let Some(feet) = &mut self.feet {
+            let below = feet.height(xi, eta);
             return [s - below, size + below.abs()];
         }
         let Some(lower) = &mut self.lower else { return [s, size] };
@@ -170,27 +148,27 @@ impl<'a> Evaluator<'a> {
     /// Computes s \[mm\] at all η \[mm\] of one column; NaN where a body has no surface.
     pub fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         self.upper.column(xi, eta, out);
-        if let Some(Lofted { rail, .. }) = self.lofted {
-            let mut heights = vec![f64::NAN; eta.len()];
-            rail.column(xi, eta, &mut heights);
-            out.iter_mut().zip(heights).for_each(|(s, below)| *s -= below);
+        self.add_lower(xi, eta, out);
+    }
+
+    /// Does what [`Self::column`] does, the wheel 16 points at once. Each point is as accurate.
+    pub(crate) fn column_in_lanes(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
+        let demand = Demand::for_tolerance(FULL_PRECISION);
+        for (eta, out) in eta.chunks(MANY).zip(out.chunks_mut(MANY)) {
+            skewed::fill(&mut self.upper, (pulp::Arch::new(), demand), xi, eta, out);
+        }
+        self.add_lower(xi, eta, out);
+    }
+
+    /// Adds how far the lower body lies below what the wheel's height is over.
+    fn add_lower(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
+        if let Some(feet) = &mut self.feet {
+            out.iter_mut().zip(eta).for_each(|(s, &eta)| *s -= feet.height(xi, eta));
         }
         if let Some(lower) = &mut self.lower {
             let mut falls = vec![f64::NAN; eta.len()];
             lower.column(xi, eta, &mut falls);
             out.iter_mut().zip(falls).for_each(|(s, fall)| *s += fall);
-        }
-    }
-
-    /// Computes s \[mm\] at all η \[mm\] of one column, on a rail 16 points at once; NaN where a body has no surface. Each point is as accurate
-    /// as that of [`Self::column`].
-    pub(crate) fn column_in_lanes(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
-        if self.lower.is_some() {
-            return self.column(xi, eta, out);
-        }
-        let demand = Demand::for_tolerance(FULL_PRECISION);
-        for (eta, out) in eta.chunks(MANY).zip(out.chunks_mut(MANY)) {
-            skewed::fill(&mut self.upper, (pulp::Arch::new(), demand), xi, eta, out);
         }
     }
 }

@@ -17,7 +17,7 @@ use super::methods::report_newton::ReportNewton;
 use super::methods::spectral::Spectral;
 use super::relief::Relief;
 use super::values::Residence;
-use crate::lofted::FramedLoft;
+use crate::lofted::{Feet, FramedLoft};
 use crate::numerics::lanes::MANY;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
@@ -161,7 +161,7 @@ fn summed<'a>(
 ) -> Box<dyn Kernel + 'a> {
     let wheel = make(0, Relief::new(placement));
     if let Some(rail) = placement.lofted() {
-        return Box::new(OverLoft { wheel, rail, axis, heights: Vec::new() });
+        return Box::new(OverLoft { wheel, rail, axis });
     }
     match placement.under() {
         Some(under) => Box::new(Sum { wheel, roller: make(1, Relief::new(under)), falls: Vec::new() }),
@@ -174,8 +174,6 @@ struct OverLoft<'a> {
     wheel: Box<dyn Kernel + 'a>,
     rail: &'a FramedLoft,
     axis: &'a EtaAxis,
-    /// Heights of the rail along a column \[mm\].
-    heights: Vec<f64>,
 }
 
 impl Kernel for OverLoft<'_> {
@@ -185,11 +183,11 @@ impl Kernel for OverLoft<'_> {
 
     fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
         let eta = &self.axis.eta;
-        self.heights.resize(eta.len(), f64::NAN);
         self.wheel.columns(xi, out);
         for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(eta.len())) {
-            self.rail.column(xi, eta, &mut self.heights);
-            out.iter_mut().zip(&self.heights).for_each(|(s, below)| *s -= below);
+            // Of its own for every column, so that any number of threads gives the same bits.
+            let mut feet = Feet::new(self.rail);
+            out.iter_mut().zip(eta).for_each(|(s, &eta)| *s -= feet.height(xi, eta));
         }
     }
 

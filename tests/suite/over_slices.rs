@@ -6,6 +6,7 @@ use std::sync::Arc;
 use wheelrail::case::{Run, SILENT};
 use wheelrail::error::Result;
 use wheelrail::lofted::{Joining, Loft};
+use wheelrail::mesh::{StripCounts, StripMesh};
 use wheelrail::scene;
 use wheelrail::search::TrackSide;
 use wheelrail::{
@@ -123,6 +124,11 @@ fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()
         let [found, expected] = [&lofted, &swept].map(|p| Patch::new(p, approach, &Window::UNBOUNDED));
         assert_eq!(found.components.len(), expected.components.len(), "{pose:?}");
         assert!((found.area() / expected.area() - 1.0).abs() < 1e-7, "{} {}", found.area(), expected.area());
+        let mesh = StripMesh::new(&lofted, &found, StripCounts::default())?;
+        for cell in &mesh.cells {
+            let [xi, eta] = cell.centroid;
+            assert!((cell.separation - own.separation(xi, eta)).abs() < 1e-10, "{pose:?} {cell:?}");
+        }
         for (found, expected) in found.components.iter().zip(&expected.components) {
             let off = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
             assert!(off(found.xi, expected.xi) < 1e-6 && off(found.eta, expected.eta) < 1e-3, "{pose:?}");
@@ -291,13 +297,36 @@ fn wing_and_nose_share_a_load() -> Result<()> {
 }
 
 #[test]
+fn a_patch_that_the_last_slice_cuts_off_is_warned_of() -> Result<()> {
+    for (along, cut) in [(160.0, false), (349.0, true), (-150.0, true)] {
+        let run = run(along, "[patch]\napproach = 0.1")?;
+        let warned = run.parts[0].warnings.iter().any(|warning| warning.contains("the end of the slices"));
+        assert_eq!(warned, cut, "{along}: {:?}", run.parts[0].warnings);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_mere_touch_has_no_patch() -> Result<()> {
+    let placement = on_crown(|y| 0.05 * y, &[-150.0, -70.0, 10.0, 80.0, 120.0], 0.01, 12.0)?;
+    for approach in [0.0, 1e-15, 1e-12] {
+        let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
+        assert_eq!(patch.components.len(), 0, "{approach}");
+    }
+    assert_eq!(Patch::new(&placement, 1e-9, &Window::UNBOUNDED).components.len(), 1);
+    let error = run(160.0, "[patch]\napproach = 0.0").map(drop).unwrap_err().to_string();
+    assert!(error.contains("grid: found auto, and no patch"), "{error}");
+    Ok(())
+}
+
+#[test]
 fn what_rails_that_vary_do_not_have_is_refused_by_name() {
     for (along, more, message) in [
         ("160.0", "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" on a rail that varies"),
         ("160.0", "[motion]\nspeed = 10.0", "motion: found a motion over a rail that varies"),
         ("160.0", "[patch]\napproach = 0.05\nframe = \"weighted\"", "patch: frame: found"),
         ("160.0", "[roller]\nradius = 350.0", "roller: found one"),
-        ("999.0", "", "wheelset: along: found 999 mm; expected a place from -150 to 350 mm"),
+        ("999.0", "", "wheelset: along: found 999.0 mm; expected a place from -150 to 350 mm"),
         ("nan", "", "wheelset: along"),
         (
             "160.0",

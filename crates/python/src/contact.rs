@@ -53,6 +53,22 @@ impl Contact {
         self.spot.placement()
     }
 
+    /// Gives the placement for what takes a rail of one profile alone.
+    fn over_one_profile(&self) -> PyResult<&Placement> {
+        let placement = self.placement()?;
+        if placement.lofted().is_some() {
+            let expected = "a rail of one profile, which has a midplane and an arc length";
+            let advice = "take `separation` and `patch`";
+            return Err(exception(Error::new(
+                "contact",
+                "a rail that varies along the track",
+                expected,
+                advice,
+            )));
+        }
+        Ok(placement)
+    }
+
     /// Checks a load \[N\] or an approach \[mm\], or takes the approach of the case, and E* \[N/mm²\]; warns of what is doubtful.
     fn asked(
         &self,
@@ -224,7 +240,7 @@ impl Contact {
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [sigma, eta] = checked_axes(("sigma", sigma), eta, tolerance)?;
-        let placement = self.placement()?;
+        let placement = self.over_one_profile()?;
         let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
@@ -242,7 +258,7 @@ impl Contact {
         py: Python<'py>,
         sigma: &Bound<'py, PyAny>,
     ) -> PyResult<(Axis<'py>, Axis<'py>, Axis<'py>)> {
-        let rail = RailArcLength::new(self.placement()?);
+        let rail = RailArcLength::new(self.over_one_profile()?);
         let nowhere = [f64::NAN; 3];
         let point =
             |&sigma: &f64| rail.point(sigma).map_or(nowhere, |at| [at.xi, at.zeta, at.sin.atan2(at.cos)]);
@@ -294,7 +310,7 @@ impl Contact {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (by, modulus) = self.asked(py, (load, approach, modulus))?;
         let placement = self.placement()?;
-        let (curvatures, cos) = (curvatures(placement), placement.rail().point().station.cos);
+        let (curvatures, cos) = (curvatures(placement), placement.upright());
         let ellipse = match by {
             ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
             ApproachBy::WheelLoad(load)
@@ -369,7 +385,7 @@ impl Contact {
     /// 101 steps over both bodies if None.
     #[pyo3(signature = (xi = None))]
     fn midsep(&self, xi: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
-        let placement = self.placement()?;
+        let placement = self.over_one_profile()?;
         let over = || placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, 101));
         let xi = xi.map_or_else(|| Ok(over()), |xi| values("xi", xi))?;
         scene::check_axis("xi", &xi).or_raise()?;

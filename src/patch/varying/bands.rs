@@ -1,7 +1,7 @@
 //! Joins the intervals of lines over a rail that varies along the track to bands.
 
-use super::lines::{Interval, Line, Varying, links};
-use crate::numerics::roots::bracketed;
+use super::lines::{Interval, Line, TO_LOWEST, Varying, links};
+use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};
 use crate::patch::outline::{End, Window};
 use crate::placement::Placement;
@@ -89,11 +89,15 @@ fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
     else {
         return xi;
     };
+    let depth = rows[at].1.lowest[1];
     let slope = |xi: f64| {
         let eta = varying.lowest(xi, Some(lane));
         varying.evaluator.separation_and_gradient(xi, eta).1[0]
     };
-    bracketed(slope, from, to).unwrap_or(xi)
+    let turn = change(slope, [from, to], TO_LOWEST);
+    // A crease, where s does not turn, may be deeper.
+    let eta = varying.lowest(turn, Some(lane));
+    if varying.separation(turn, eta) < depth { turn } else { xi }
 }
 
 fn close(band: &mut Band, xi: f64, end: Option<End>, side: [f64; 2]) {

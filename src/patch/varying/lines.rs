@@ -6,7 +6,7 @@
 //! lines whose intervals do not answer each other one to one, more lines are laid until the place is known to rounding: there intervals
 //! begin, end, divide or join. So a part is missed only if it is narrower than the steps in both directions and does not hold C.
 
-use crate::numerics::roots::{bracketed, last_where, secant};
+use crate::numerics::roots::{change, secant};
 use crate::patch::skewed::slicer::Edge;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -33,8 +33,8 @@ const STEEPEST: f64 = 4.0;
 const POINTS: usize = 12;
 const BEYOND: f64 = 0.25;
 
-/// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: nearer to a tip the rounding of s, 1e-11 mm at
-/// most, makes intervals come and go, and bands of no length.
+/// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: nearer to a tip the rounding of s makes intervals
+/// come and go, and bands of no length.
 const NEAREST: f64 = 1e-10;
 
 /// Most lines: where s is noise of the size of δ, intervals come and go on every line.
@@ -43,9 +43,12 @@ const MOST_LINES: usize = 20_000;
 /// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
 pub(in crate::patch) const SMOOTH: f64 = 1e-9;
 
+/// Depth \[mm\] of an interval that is none: rounding of s, below which intervals come and go.
+const ROUNDING: f64 = 1e-11;
+
 /// Last step to an edge \[mm\], and to a lowest place, where s is flat.
 const TO_EDGE: f64 = 1e-9;
-const TO_LOWEST: f64 = 1e-6;
+pub(super) const TO_LOWEST: f64 = 1e-6;
 
 /// How far from an edge one is looked for that its neighbours tell, as a share of the interval's length.
 const BESIDE_EDGE: f64 = 0.02;
@@ -195,15 +198,11 @@ impl<'a> Varying<'a> {
             })
             .collect();
         for k in dips.into_iter().rev() {
-            let mut slope = |eta: f64| self.evaluator.separation_and_gradient(xi, eta).1[1];
-            let [from, to] = [points[k - 1][0], points[k + 1][0]];
-            let lowest = secant(&mut slope, [from, to], TO_LOWEST);
-            if let Some(eta) = lowest.or_else(|| bracketed(slope, from, to)) {
-                let at = k + usize::from(eta > points[k][0]);
-                let s = self.separation(xi, eta);
-                if eta != points[k][0] && s < points[k][1] {
-                    points.insert(at, [eta, s]);
-                }
+            let slope = |eta: f64| self.evaluator.separation_and_gradient(xi, eta).1[1];
+            let eta = change(slope, [points[k - 1][0], points[k + 1][0]], TO_LOWEST);
+            let (s, at) = (self.separation(xi, eta), k + usize::from(eta > points[k][0]));
+            if s < points[k][1] {
+                points.insert(at, [eta, s]);
             }
         }
         let mut intervals: Vec<Interval> = Vec::new();
@@ -227,16 +226,14 @@ impl<'a> Varying<'a> {
             }
         }
         intervals.extend(open);
+        intervals.retain(|found| approach - found.lowest[1] > ROUNDING);
         Line { xi, intervals }
     }
 
     /// Finds the end of an interval between a place inside and one outside.
     fn edge(&mut self, xi: f64, inside: f64, outside: f64) -> f64 {
         let approach = self.approach;
-        let mut depth = |eta: f64| self.separation(xi, eta) - approach;
-        let root = secant(&mut depth, [inside, outside], TO_EDGE);
-        let root = root.or_else(|| bracketed(&mut depth, inside, outside));
-        root.unwrap_or_else(|| last_where(|eta| depth(eta) < 0.0, inside, outside))
+        change(|eta| self.separation(xi, eta) - approach, [inside, outside], TO_EDGE)
     }
 
     /// Lays more lines until the intervals of neighbours answer each other, or nothing lies between the lines.

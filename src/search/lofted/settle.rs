@@ -42,6 +42,13 @@ pub(super) struct Gap<'a> {
     pub along: f64,
 }
 
+/// A place of contact with its strip.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found {
+    pub strip: usize,
+    pub settled: Settled,
+}
+
 impl Gap<'_> {
     /// The varying body's point at a place, and the other one's above it; `None` where that does not reach.
     pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SpacePoint, Above)> {
