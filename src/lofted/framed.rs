@@ -16,7 +16,7 @@ const LEVEL: f64 = 4.0;
 /// How far along the track from C the surface is looked at \[mm\]: farther than a wheel reaches.
 const FARTHEST: f64 = 4000.0;
 
-/// Distance from the end of a run \[mm\] up to which it leads to feet: what a part moves aside over half a step along the track.
+/// How far beyond the end of a run feet are sought from it \[mm\]: a part may be that much wider half a step along the track.
 const BESIDE: f64 = 2.0;
 
 /// Most steps to a foot; three or four are usual.

@@ -89,7 +89,7 @@ impl Patch {
     /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
     /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
     /// On a rail that varies along the track a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
-    /// 1 mm along η; what lies more than 120 mm ahead of C or behind is left out, and the boundary is interpolated to 1e-9 of its width.
+    /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window))
     }

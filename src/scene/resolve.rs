@@ -30,6 +30,9 @@ const SMALLEST: f64 = 1e-60;
 /// Largest approach \[mm\]. No rail is so high: bodies that sink so deep pass through each other.
 const DEEPEST: f64 = 200.0;
 
+/// The same on a rail that varies along the track, where deeper patches take tens of seconds and mean as little.
+const DEEPEST_IN_SLICES: f64 = 10.0;
+
 /// Largest load \[N\]. It is far above any real one, and its powers do not overflow.
 const HEAVIEST: f64 = 1e60;
 
@@ -67,18 +70,32 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     }
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
-    if profiles.varies() && question.motion.is_some() {
-        return Err(on_varying_rail());
-    }
-    if profiles.varies() && axes.reference == Reference::Rail {
-        let expected = "grid.reference = \"plane\": the conformal reference is of extruded rails";
-        let advice = "leave it out";
-        return Err(Error::new("grid: reference", "\"rail\" on a rail that varies", expected, advice));
+    if profiles.varies() {
+        asked_of_varying_rail(&question, axes.reference)?;
     }
     let of = |own: &SideProfiles| Landmarks::new(&own.pair);
     let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles, &landmarks));
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, landmarks, doubts })
+}
+
+/// Refuses what there is not on rails that vary along the track.
+fn asked_of_varying_rail(question: &Question, reference: Reference) -> Result<()> {
+    if question.motion.is_some() {
+        return Err(on_varying_rail());
+    }
+    if reference == Reference::Rail {
+        let expected = "grid.reference = \"plane\": the conformal reference is of extruded rails";
+        let advice = "leave it out";
+        return Err(Error::new("grid: reference", "\"rail\" on a rail that varies", expected, advice));
+    }
+    match question.approach {
+        Some(ApproachBy::Given(approach)) if approach > DEEPEST_IN_SLICES => {
+            let expected = format!("0 to {DEEPEST_IN_SLICES} mm on a rail that varies along the track");
+            Err(Error::new("patch: approach", format!("{approach:?} mm"), expected, "check the unit"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes a scene as TOML, with the values of the keys that it leaves to the program.

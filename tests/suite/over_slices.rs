@@ -330,6 +330,11 @@ fn what_rails_that_vary_do_not_have_is_refused_by_name() {
         ("nan", "", "wheelset: along"),
         (
             "160.0",
+            "[patch]\napproach = 20.0",
+            "patch: approach: found 20.0 mm; expected 0 to 10 mm on a rail that varies",
+        ),
+        (
+            "160.0",
             "[grid]\nmethod = \"report-newton\"\n[patch]\napproach = 0.05",
             "grid: method: found report-newton with",
         ),

@@ -1,10 +1,10 @@
 //! Lines of constant ξ over a rail that varies along the track, and the intervals of the patch on them.
 //!
-//! A line may meet the patch in several intervals of η, as on either side of a dip.
+//! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
+//! nearer to each other around C. Where two neighbours differ in the number of their intervals, or an end moves far between them,
+//! intervals begin, end, divide or join in between; lines are then added there until that place is known to rounding.
 //!
-//! Lines of constant ξ, half a millimetre apart and nearer to each other around C, are searched for intervals with s < δ. Between two
-//! lines whose intervals do not answer each other one to one, more lines are laid until the place is known to rounding: there intervals
-//! begin, end, divide or join. So a part is missed only if it is narrower than the steps in both directions and does not hold C.
+//! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
 use crate::numerics::roots::{change, secant};
 use crate::patch::skewed::slicer::Edge;
@@ -22,8 +22,11 @@ const STEPS: [f64; 2] = [0.25, 1.0];
 const STRIDE: f64 = 2.5;
 const STRIDE_SHARE: f64 = 2.0;
 
-/// How far along the track from C the patch is looked for \[mm\], and how many halvings of a step lie around C.
+/// How far along the track from C the patch is looked for \[mm\], and as a multiple of that half-length; the farther of the two.
 const FARTHEST: f64 = 120.0;
+const FARTHEST_SHARE: f64 = 2.0;
+
+/// How many halvings of a step lie around C.
 const HALVINGS: i32 = 24;
 
 /// By how much ends of intervals move from line to line, as a multiple of the distance of the lines, without more lines between them.
@@ -50,7 +53,7 @@ const ROUNDING: f64 = 1e-11;
 const TO_EDGE: f64 = 1e-9;
 pub(super) const TO_LOWEST: f64 = 1e-6;
 
-/// How far from an edge one is looked for that its neighbours tell, as a share of the interval's length.
+/// How far an edge is looked for from its estimate, as a share of half the interval's length.
 const BESIDE_EDGE: f64 = 0.02;
 
 /// An interval of η of the patch.
@@ -75,6 +78,8 @@ pub(in crate::patch) struct Varying<'a> {
     pub(super) approach: f64,
     /// Step along lines of constant ξ \[mm\].
     step: f64,
+    /// How far along the track from C the patch is looked for \[mm\].
+    farthest: f64,
     /// The lines of every band.
     pub(super) lanes: Vec<Vec<(f64, Interval)>>,
 }
@@ -86,13 +91,14 @@ impl<'a> Varying<'a> {
         // Of δ = NaN, where nothing is found, and below 0 the least.
         let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
         let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
-        Some(Self { evaluator: Evaluator::new(placement), approach, step, lanes: Vec::new() })
+        let farthest = FARTHEST.max(FARTHEST_SHARE * half);
+        Some(Self { evaluator: Evaluator::new(placement), approach, step, farthest, lanes: Vec::new() })
     }
 
-    /// Lays the lines over a window; both ends of the range of ξ over which the rail lies in it are the first and the last. None where it
-    /// does not.
+    /// Finds the lines over a window \[ξ, η\], from one end to the other of the range of ξ in which it holds the rail; none if it holds
+    /// nothing of it.
     pub(super) fn lines(&mut self, placement: &Placement, window: [[f64; 2]; 2]) -> Vec<Line> {
-        let eta = [window[1][0].max(-FARTHEST), window[1][1].min(FARTHEST)];
+        let eta = [window[1][0].max(-self.farthest), window[1][1].min(self.farthest)];
         let reach = placement.lofted().and_then(|rail| rail.reach(eta));
         let Some([from, to]) = reach.filter(|_| eta[0] < eta[1]) else { return Vec::new() };
         let xi = [window[0][0].max(from), window[0][1].min(to)];
@@ -110,7 +116,7 @@ impl<'a> Varying<'a> {
         near.or_else(|| self.interval(xi, lane).map(|found| found.eta)).map(|eta| eta.map(edge))
     }
 
-    /// Finds both ends of the slice of a lane at ξ next to those that the lines on both sides tell; `None` where they are not there.
+    /// Finds both ends of the slice of a lane at ξ near their estimate from the lines on both sides; `None` where they are farther off.
     fn edges_between(&mut self, xi: f64, lane: Option<usize>) -> Option<[f64; 2]> {
         let rows = self.lanes.get(lane?)?;
         let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
@@ -129,7 +135,8 @@ impl<'a> Varying<'a> {
         Some(found)
     }
 
-    /// Returns η of the least s of a lane at ξ \[mm\], or of C's surroundings without one; between its lines where nothing overlaps.
+    /// Returns η of the least s of a lane at ξ \[mm\]; of the deepest interval without a lane. Where there is no interval it is that of the
+    /// lane's nearest line, or 0.
     pub(in crate::patch) fn lowest(&mut self, xi: f64, lane: Option<usize>) -> f64 {
         if let Some(found) = self.interval(xi, lane) {
             return found.lowest[0];
@@ -144,10 +151,10 @@ impl<'a> Varying<'a> {
         self.evaluator.separation(xi, eta)
     }
 
-    /// Finds the interval of a lane at ξ: between those of the lines on both sides.
+    /// Finds the interval of a lane at ξ, that nearest to those of the lines on both sides; without a lane the deepest one.
     fn interval(&mut self, xi: f64, lane: Option<usize>) -> Option<Interval> {
         let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else {
-            let found = self.whole_line(xi, [-FARTHEST, FARTHEST]);
+            let found = self.whole_line(xi, [-self.farthest, self.farthest]);
             return found.intervals.into_iter().min_by(|a, b| a.lowest[1].total_cmp(&b.lowest[1]));
         };
         let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
