@@ -124,7 +124,7 @@ fn equal_slices(wheel: Profile) -> Result<()> {
 }
 
 /// The crossing of the examples, and its march.
-pub(super) fn crossing() -> March {
+fn crossing() -> March {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
     scene::march(&scene::load(&folder.join("crossing.toml")).unwrap(), &folder).unwrap().0
 }
