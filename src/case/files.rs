@@ -21,6 +21,7 @@ use crate::export::{
     interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
+use crate::lofted::{Feet, LoftFoot};
 use crate::mesh::Surface;
 use crate::patch::Slice;
 use crate::placement::Creepages;
@@ -373,24 +374,30 @@ impl RailColumns {
 
     /// Computes the surface of a roller, or of a rail that varies along the track, over the grid; `None` for an extruded rail.
     fn surface(part: &Part, height: &[f64]) -> Option<LowerSurface> {
-        let placement = &part.site.contact.placement;
-        if placement.under().is_none() && placement.lofted().is_none() {
-            return None;
-        }
-        let mut bodies = Evaluator::new(placement);
-        let mut evaluator = placement.under().map(Evaluator::new);
-        let mut fields = LowerSurface::default();
-        for (&xi, height) in part.site.grid.xi.iter().zip(height) {
-            for &eta in &part.site.grid.eta {
-                let normal = bodies.normals(xi, eta).rail;
-                let fall = evaluator.as_mut().map(|under| under.separation(xi, eta));
-                fields.fall.push(fall.unwrap_or_else(|| height - bodies.lower_height(xi, eta)));
-                fields.normal.push(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
+        let (placement, grid) = (&part.site.contact.placement, &part.site.grid);
+        let column = |(&xi, &height): (&f64, &f64)| -> Vec<(f64, [f64; 3])> {
+            if let Some(lofted) = placement.lofted() {
+                let mut feet = Feet::new(lofted);
+                let point = |foot: LoftFoot| (height - foot.zeta, foot.normal().into_inner().into());
+                return grid.eta.iter().map(|&eta| feet.at(xi, eta).map_or(NO_SURFACE, point)).collect();
             }
-        }
-        Some(fields)
+            let mut bodies = Evaluator::new(placement);
+            let normals = grid.eta.iter().map(|&eta| bodies.normals(xi, eta).rail);
+            let normals =
+                normals.map(|normal| normal.map_or(NO_SURFACE.1, |normal| normal.into_inner().into()));
+            let mut under = placement.under().map(Evaluator::new);
+            let fall = |eta: f64| under.as_mut().map_or(f64::NAN, |under| under.separation(xi, eta));
+            grid.eta.iter().copied().map(fall).zip(normals).collect()
+        };
+        (placement.under().is_some() || placement.lofted().is_some()).then(|| {
+            let (fall, normal) = grid.xi.par_iter().zip(height).flat_map_iter(column).unzip();
+            LowerSurface { fall, normal }
+        })
     }
 }
+
+/// Where a lower body has no surface: its fall and its normal.
+const NO_SURFACE: (f64, [f64; 3]) = (f64::NAN, [f64::NAN; 3]);
 
 fn header(run: &Run, part: &Part) -> Header {
     Header {

@@ -5,6 +5,8 @@
 
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::{Unit, Vector3};
+
 use super::bicubic::SurfacePoint;
 use super::build::Loft;
 use super::strip::Strip;
@@ -315,6 +317,11 @@ impl<'a> Feet<'a> {
 }
 
 impl LoftFoot {
+    /// The surface's outward (upward) unit normal (ξ, η, ζ).
+    pub fn normal(&self) -> Unit<Vector3<f64>> {
+        Unit::new_normalize(Vector3::new(-self.slopes[0], -self.slopes[1], 1.0))
+    }
+
     /// The place that a step in ξ and η \[mm\] leads to along the tangent plane.
     fn moved(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| self.place[k] + xi * self.steps[0][k] + eta * self.steps[1][k])

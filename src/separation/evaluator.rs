@@ -5,7 +5,7 @@ use nalgebra::{Unit, Vector3};
 use super::columns::skewed;
 use super::demand::{Demand, FULL_PRECISION};
 use super::relief::Relief;
-use crate::lofted::{Feet, LoftFoot};
+use crate::lofted::Feet;
 use crate::numerics::lanes::MANY;
 use crate::placement::Placement;
 
@@ -107,9 +107,7 @@ impl<'a> Evaluator<'a> {
     /// Computes both outward normals at (ξ, η).
     pub fn normals(&mut self, xi: f64, eta: f64) -> Normals {
         let rail = match (&mut self.feet, &mut self.lower) {
-            (Some(feet), _) => feet.at(xi, eta).map(|LoftFoot { slopes: [along, ahead], .. }| {
-                Unit::new_normalize(Vector3::new(-along, -ahead, 1.0))
-            }),
+            (Some(feet), _) => feet.at(xi, eta).map(|foot| foot.normal()),
             (None, Some(lower)) => lower.point(xi, eta).map(|point| {
                 let down = lower.normal(&point);
                 Unit::new_unchecked(Vector3::new(down.x, down.y, -down.z))
