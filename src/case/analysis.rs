@@ -13,7 +13,6 @@ use crate::mesh::{StripCounts, StripMesh};
 use crate::patch::Patch;
 use crate::placement::Placement;
 use crate::separation::methods::quadratic::quadratic_form;
-use crate::separation::methods::report_newton;
 use crate::separation::{EtaAxis, Method};
 use crate::separation::{Plan, Values, plan};
 
@@ -91,17 +90,17 @@ impl Analysis {
     }
 }
 
-/// Refuses a method that has no formula for a placed pair: the Report's needs arcs, the quadratic one a smooth contact.
+/// Refuses a method that has no formula for a placed pair: the Report's needs arcs, the quadratic one a smooth contact, columns a round
+/// wheel.
 ///
 /// # Errors
 /// Says what the pair has that the method does not know, with the place "grid: method".
 pub fn check_method(placement: &Placement, method: Option<Method>) -> Result<()> {
     let missing = match method {
-        Some(Method::ReportNewton) => report_newton::missing(placement),
         Some(Method::Quadratic) if quadratic_form(placement).iter().any(|c| c.is_nan()) => {
             Some("a contact at a kink or end")
         }
-        _ => None,
+        method => method.and_then(|method| method.missing(placement)),
     };
     let (Some(method), Some(missing)) = (method, missing) else { return Ok(()) };
     let found = format!("{} with {missing}", method.name());

@@ -157,7 +157,7 @@ pub fn conicity(case: &Case, options: &ConicityOptions, told: &dyn Fn(&str)) -> 
             "conicity is that of a wheelset on its track",
         ));
     };
-    case.profiles().swept("give the rail one section by `along` in [rail]")?;
+    case.profiles().swept("give it one section")?;
     let pairs = [TrackSide::Left, TrackSide::Right].map(|side| &case.profiles().on(Some(side)).pair);
     let mut report = contact_geometry(system, pairs, position.roll, options, told)?;
     report.findings.extend(points_apart(case));

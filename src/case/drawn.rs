@@ -113,7 +113,7 @@ pub fn patch_picture(
 
 /// Gives the contact frame in the axes of the rail's profile; on a rail that varies along the track y counts as its slices do.
 pub(super) fn frame_of(placement: &Placement) -> Frame {
-    let Some(lofted) = placement.lofted() else { return Frame::from(&placement.rail().contact_frame()) };
+    let Some(lofted) = placement.lofted_rail() else { return Frame::from(&placement.rail().contact_frame()) };
     let [xi, eta, zeta] = lofted.axes().map(|axis| Unit::new_normalize(Vector3::from(axis)));
     Frame { origin: Point3::from(lofted.origin()), xi, eta, zeta }
 }

@@ -313,7 +313,7 @@ fn always<'a>(part: &'a Part, s: &'a Sources<'a>, on_rail: Option<&'a OnRail<'a>
         bytes("interpen.csv", move || Ok(interpen_csv(&intervals(part)).into_bytes())),
         bytes("patch.svg", || Ok(s.picture.svg().into_bytes())),
     ];
-    // A rail that varies has no midplane of its own.
+    // Bodies that vary have no one midplane.
     if placement.lofted().is_none() {
         jobs.push(bytes(
             "midsep.txt",
@@ -353,7 +353,7 @@ struct RailColumns {
 impl RailColumns {
     fn new(part: &Part) -> Self {
         let placement = &part.site.contact.placement;
-        if placement.lofted().is_some() {
+        if placement.lofted_rail().is_some() {
             // Along η = 0, and where it has no surface there from the tangent plane.
             let mut bodies = Evaluator::new(placement);
             let column = |&xi: &f64| {
@@ -376,7 +376,7 @@ impl RailColumns {
     fn surface(part: &Part, height: &[f64]) -> Option<LowerSurface> {
         let (placement, grid) = (&part.site.contact.placement, &part.site.grid);
         let column = |(&xi, &height): (&f64, &f64)| -> Vec<(f64, [f64; 3])> {
-            if let Some(lofted) = placement.lofted() {
+            if let Some(lofted) = placement.lofted_rail() {
                 let mut feet = Feet::new(lofted);
                 let point = |foot: LoftFoot| (height - foot.zeta, foot.normal().into_inner().into());
                 return grid.eta.iter().map(|&eta| feet.at(xi, eta).map_or(NO_SURFACE, point)).collect();
@@ -389,7 +389,7 @@ impl RailColumns {
             let fall = |eta: f64| under.as_mut().map_or(f64::NAN, |under| under.separation(xi, eta));
             grid.eta.iter().copied().map(fall).zip(normals).collect()
         };
-        (placement.under().is_some() || placement.lofted().is_some()).then(|| {
+        (placement.under().is_some() || placement.lofted_rail().is_some()).then(|| {
             let (fall, normal) = grid.xi.par_iter().zip(height).flat_map_iter(column).unzip();
             LowerSurface { fall, normal }
         })

@@ -35,7 +35,7 @@ pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
         }
         Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => ([0.0; 2], 0.0),
     };
-    if let Some(lofted) = placement.lofted() {
+    if let Some(lofted) = placement.lofted_rail() {
         let [x, y, z] = lofted.origin();
         let origin = Vector4::new(x, y - run.case.standing.along, z, 1.0);
         let columns = lofted.axes().map(|[x, y, z]| Vector4::new(x, y, z, 0.0));

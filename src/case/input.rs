@@ -12,11 +12,12 @@ use super::landmarks::SideLandmarks;
 use crate::conformal::Reference;
 use crate::error::{Error, Result};
 use crate::load::{Elastic, effective_modulus};
-use crate::lofted::Loft;
+use crate::lofted::LoftedBody;
 use crate::measured::Record;
 use crate::numerics::bodies::Bodies;
 use crate::placement::Motion;
 use crate::placement::Pair;
+use crate::profile::Side;
 use crate::search::{LoftedPair, Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
 use crate::separation::Method;
 
@@ -55,7 +56,7 @@ pub struct SideProfiles {
     /// The record of each; `None` for a drawn profile.
     pub measured: Bodies<Option<Record>>,
     /// The rail's surface where it varies along the track: `pair` then has a section of it.
-    pub loft: Option<Arc<Loft>>,
+    pub varying: Option<LoftedBody>,
 }
 
 impl SideProfiles {
@@ -68,24 +69,27 @@ impl SideProfiles {
 impl Profiles {
     /// Makes the profiles of both sides from a pair that nothing was measured of.
     pub fn drawn(pair: Pair) -> Self {
-        Self { right: SideProfiles { pair, measured: Bodies::default(), loft: None }, left: None }
+        Self { right: SideProfiles { pair, measured: Bodies::default(), varying: None }, left: None }
     }
 
-    /// Tells whether a rail varies along the track.
-    pub fn varies(&self) -> bool {
-        self.sides().any(|(_, profiles)| profiles.loft.is_some())
+    /// Lists which bodies vary: rails along the track, or wheels around their axle.
+    pub fn varying(&self) -> impl Iterator<Item = Side> {
+        self.sides().filter_map(|(_, profiles)| profiles.varying.as_ref()).map(LoftedBody::side)
     }
 
-    /// Refuses rails that vary along the track, for what takes rails of one profile.
+    /// Refuses bodies that vary, for what takes bodies of one profile.
     ///
     /// # Errors
-    /// A rail that varies; `advice` says what can be had instead.
+    /// A rail or a wheel that varies; `advice` says what can be had instead.
     pub fn swept(&self, advice: &str) -> Result<()> {
-        if !self.varies() {
-            return Ok(());
-        }
-        let expected = "rails of one profile each, or `along` in [rail]";
-        Err(Error::new("rail", "a rail that varies along the track", expected, advice))
+        let Some(side) = self.varying().next() else { return Ok(()) };
+        let (key, expected) = match side {
+            Side::Rail => ("rail", "rails of one profile each, or `along` in [rail]"),
+            Side::Wheel => {
+                ("wheel", "wheels of one profile each: no `flat`, no `radii`, and `angle` with a list")
+            }
+        };
+        Err(Error::new(key, LoftedBody::name(side), expected, advice))
     }
 
     /// Gives those of a side; a single wheel has the right-hand side's.
@@ -112,6 +116,8 @@ pub struct Standing {
     pub roll_by_load: bool,
     /// Where the middle of the axle is along rails that vary, in the coordinate of their lists \[mm\]; 0 on others.
     pub along: f64,
+    /// By how much wheels that vary are turned about their axle \[rad\]: what lies at −pitch is lowest; 0 of others.
+    pub pitch: f64,
 }
 
 /// The ways to place bodies.
@@ -131,7 +137,7 @@ pub enum Place {
         /// Where the wheel stands.
         pose: Pose,
     },
-    /// A single wheel is lowered onto a rail that varies along the track.
+    /// A single wheel is lowered onto its rail, and one of them varies.
     OnSlices {
         /// Rail and wheel, prepared for searches.
         pair: Arc<LoftedPair>,
@@ -356,8 +362,10 @@ impl Case {
         for (side, profiles) in self.profiles.sides() {
             let findings = profiles.measured.both().into_iter().flatten().flat_map(|record| &record.warnings);
             let place = side.map_or_else(String::new, |side| format!("{side} side: "));
-            let surface = profiles.loft.iter().flat_map(|loft| &loft.warnings);
-            out.extend(surface.map(|warning| format!("{place}rail: {warning}")));
+            if let Some(body) = &profiles.varying {
+                let key = if body.side() == Side::Rail { "rail" } else { "wheel" };
+                out.extend(body.warnings().iter().map(|warning| format!("{place}{key}: {warning}")));
+            }
             out.extend(findings.map(|finding| format!("{place}{}: {}", finding.place, finding.found)));
         }
         out

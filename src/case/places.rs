@@ -209,14 +209,16 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
             Ok(vec![Side { side: None, height: touch.height, roll: pose.roll(), places }])
         }
         Place::OnSlices { pair, pose } => {
-            let Some((height, places)) = pair.touch(pose, case.standing.along, &selection)? else {
+            let Some((height, places)) =
+                pair.touch(pose, [case.standing.along, case.standing.pitch], &selection)?
+            else {
                 return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
             };
             Ok(vec![Side { side: None, height, roll: pose.roll(), places }])
         }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
-            search.stand_at(case.standing.along, 0.0);
+            search.stand_at(case.standing.along, case.standing.pitch);
             let position = Position { roll: roll.map_or(position.roll, Roll::Fixed), ..*position };
             let Some(touch) = search.touch(&position, &selection)? else {
                 let expected =
@@ -275,15 +277,15 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
     Ok(Ok(all))
 }
 
-/// Gives the rail of a side that varies along the track.
+/// Gives the body of a side that varies.
 fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
-    let loft = case.profiles.on(side).loft.as_ref()?;
+    let body = case.profiles.on(side).varying.as_ref()?;
     let along = case.standing.along;
     let from = match &case.standing.place {
         Place::Wheelset { system, position } => system.along(side != Some(TrackSide::Left), position, along),
         Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => along,
     };
-    Some(OnLoft { loft, from })
+    Some(OnLoft { body, from })
 }
 
 fn rules(case: &Case, alone: bool) -> RegionRules {

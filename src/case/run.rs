@@ -186,9 +186,9 @@ const AT_SLICE: f64 = 0.1;
 
 /// Says that a patch reaches the first or the last slice of a rail that varies along the track, beyond which there is no surface.
 fn slices_warning(site: &Site, patch: &Patch) -> Option<String> {
-    let lofted = site.contact.placement.lofted()?;
+    let lofted = site.contact.placement.lofted_rail()?;
     let [from, to] = lofted.loft().reach();
-    let along = patch.extent()?.eta.map(|eta| lofted.origin()[1] + lofted.axes()[1][1] * eta);
+    let along = patch.extent()?.eta.map(|eta| lofted.along_at(0.0, eta));
     let end = match along {
         [behind, _] if behind <= from + AT_SLICE => from,
         [_, ahead] if ahead >= to - AT_SLICE => to,

@@ -86,9 +86,11 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
     if run.parts.len() > MOST_SHOWN {
         notes.push(format!("The page shows the first {MOST_SHOWN} of {} contacts.", run.parts.len()));
     }
-    if run.case.profiles.varies() {
+    if run.case.profiles.varying().next().is_some() {
         notes.push(
-            "Rails that vary along the track are drawn in space as if one section went on; separations are those of their surface.".into(),
+            "Rails that vary along the track, and wheels that vary around their axle, are drawn in space as if one section went on; \
+             separations are those of their surface."
+                .into(),
         );
     }
     if run.parts.iter().any(|part| part.analysis.conformal.is_some()) {

@@ -12,11 +12,11 @@ use super::input::FrameOrigin;
 use super::overlaps::{Overlap, RegionRules, overlaps};
 use crate::error::Result;
 use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
-use crate::lofted::Loft;
+use crate::lofted::LoftedBody;
 use crate::mesh::groups;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
-use crate::profile::Station;
+use crate::profile::{Side, Station};
 use crate::search;
 
 /// An approach to begin with where a place has no ellipse \[mm\].
@@ -28,11 +28,11 @@ pub(super) const SETTLED: f64 = 3e-4;
 /// Demand on the load that wheels carry, relative: below the error of the cells.
 const CARRIED: f64 = 2e-4;
 
-/// A rail that varies along the track, and where a wheel stands over it.
+/// A body that varies, and where the wheel stands.
 #[derive(Clone, Copy)]
 pub(super) struct OnLoft<'a> {
-    pub loft: &'a Arc<Loft>,
-    /// Coordinate \[mm\] in the list of slices from which places count.
+    pub body: &'a LoftedBody,
+    /// Coordinate \[mm\] in the list of a rail's slices from which places count.
     pub from: f64,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct OnLoft<'a> {
 /// # Errors
 /// A place of another pair.
 pub(super) fn placed_at(place: &search::Contact, pair: &Pair, on: Option<OnLoft<'_>>) -> Result<Placement> {
-    on.map_or_else(|| place.placed(pair), |on| place.placed_on(pair, on.loft, on.from))
+    on.map_or_else(|| place.placed(pair), |on| place.placed_on(pair, on.body, on.from))
 }
 
 /// A wheel over its rail, with the places where it may touch.
@@ -130,16 +130,20 @@ impl Region {
         Ok(Self::of(place, placement, approach, patch, &RegionRules { merge, ..*rules }))
     }
 
-    /// Tells whether the group of parts around C holds a place of contact.
-    fn holds(&self, place: &Reached) -> bool {
+    /// Tells whether the group of parts around C, which lies at `y` \[mm\] along the rail, holds a place of contact.
+    fn holds(&self, place: &Reached, y: f64) -> bool {
         let within = |at: f64, [from, to]: [f64; 2]| from <= at && at <= to;
-        if let Some(lofted) = self.placement.lofted() {
-            let [xi, eta, _] = lofted.seen([place.rail.x, place.y, place.rail.y]);
-            let holds = |extent: &Window| within(xi, extent.xi) && within(eta, extent.eta);
-            return self.extents.first().is_some_and(holds);
-        }
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
-        self.extents.first().is_some_and(|extent| within(xi, extent.xi))
+        let [xi, eta] = match self.placement.lofted() {
+            None => return self.extents.first().is_some_and(|extent| within(xi, extent.xi)),
+            Some(lofted) if lofted.side() == Side::Rail => {
+                let [xi, eta, _] = lofted.seen([place.rail.x, place.y, place.rail.y]);
+                [xi, eta]
+            }
+            Some(_) => [xi, place.y - y],
+        };
+        let holds = |extent: &Window| within(xi, extent.xi) && within(eta, extent.eta);
+        self.extents.first().is_some_and(holds)
     }
 
     /// Gives what the wheel sinks by \[mm\], of the region that touches first.
@@ -205,7 +209,8 @@ impl<'a> Wheel<'a> {
             if index > 0 && approach <= 0.0 {
                 continue;
             }
-            if let Some(region) = regions.iter_mut().find(|region| region.holds(place)) {
+            let holds = |region: &&mut Region| region.holds(place, self.places[region.place].y);
+            if let Some(region) = regions.iter_mut().find(holds) {
                 region.merged.push(index);
                 continue;
             }
@@ -289,7 +294,7 @@ impl<'a> Wheel<'a> {
 
 /// Gives a point (ξ, η) \[mm\] of the tangent plane and its normal in axes that all regions of a wheel share; `y` is where C lies.
 fn in_space(placement: &Placement, y: f64, [xi, eta]: [f64; 2]) -> (Point3<f64>, Vector3<f64>) {
-    if let Some(lofted) = placement.lofted() {
+    if let Some(lofted) = placement.lofted_rail() {
         let [along_xi, along_eta, normal] = lofted.axes().map(Vector3::from);
         return (Point3::from(lofted.origin()) + xi * along_xi + eta * along_eta, normal);
     }

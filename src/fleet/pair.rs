@@ -132,7 +132,7 @@ pub(super) fn case(fleet: &Listed, shelf: &Shelf, number: Number) -> Result<Case
             Error::new(SIDES[k], "no radius", expected, "give `radius` in [wheel], or columns of the table")
         })?;
         let pair = scene::pair_of(&fleet.scene, rail.profile, wheel.profile, radius)?;
-        Ok(SideProfiles { pair, measured: Bodies { rail: rail.record, wheel: wheel.record }, loft: None })
+        Ok(SideProfiles { pair, measured: Bodies { rail: rail.record, wheel: wheel.record }, varying: None })
     };
     let radii = [0, 1].map(|k| radius(fleet, shelf, number, k));
     let alike = rails[0] == rails[1] && wheels[0] == wheels[1] && radii[0] == radii[1];

@@ -64,7 +64,7 @@ pub struct Feasibility {
 /// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     if placement.lofted().is_some() {
-        return on_varying_rail(placement);
+        return with_varying(placement);
     }
     let along_zeta = match (placement.skew() == 0.0, placement.under()) {
         (true, _) => least_in_midplane(placement)?,
@@ -82,8 +82,8 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }
 
-/// The least s on a rail that varies along the track: at C, or where the bodies overlap most.
-fn on_varying_rail(placement: &Placement) -> Option<Feasibility> {
+/// The least s where a body varies: at C, or where the bodies overlap most.
+fn with_varying(placement: &Placement) -> Option<Feasibility> {
     let at_contact = Evaluator::new(placement).separation(0.0, 0.0);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     // Below 0 by what counts as rounding, which would otherwise make patches of its own around C.

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use super::build::{Loft, Slice};
 use super::joining::Joining;
 use super::kept::{Curve, Form, Stretch};
+use super::section::section;
 use super::strip::Strip;
 use crate::error::{Error, Result, finite};
 use crate::numerics::slopes;
@@ -149,6 +150,23 @@ impl LoftedWheel {
     pub fn with_warnings(mut self, doubts: Vec<String>) -> Self {
         self.warnings.extend(doubts);
         self
+    }
+
+    /// Returns the section that is lowest where the wheel is turned by a pitch \[rad\], + forward at the bottom.
+    ///
+    /// # Errors
+    /// A place where the sections leave the surface undefined.
+    pub fn lowest(&self, pitch: f64) -> Result<Profile> {
+        let angle = turned(-pitch, self.middle);
+        let nowhere = || {
+            let found = format!("a gap in the surface at {angle} rad");
+            Error::new("pitch", found, "a place that the slices join to a surface", "choose another pitch")
+        };
+        let at = self.radius * angle;
+        let section = section(&self.loft, self.loft.widest(at).ok_or_else(nowhere)?, at)?;
+        let mut lowest = section.upside_down();
+        lowest.name = format!("section at {angle:.4} rad");
+        Ok(lowest)
     }
 
     /// Where the sections leave the surface undefined, and why.

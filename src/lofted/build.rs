@@ -103,7 +103,7 @@ impl Loft {
     /// Returns the index of the strip with most cells at y \[mm\], the running rail's in most cases; `None` where there is none.
     pub fn widest(&self, y: f64) -> Option<usize> {
         let strips = self.strips.iter().enumerate();
-        let here = strips.filter(|(_, strip)| (strip.reach()[0]..=strip.reach()[1]).contains(&y));
+        let here = strips.filter(|(_, strip)| strip.holds(y));
         here.max_by_key(|(_, strip)| strip.cells()).map(|(k, _)| k)
     }
 }

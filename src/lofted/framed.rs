@@ -1,22 +1,30 @@
-//! A lofted rail seen from a contact frame: the surface's height along ζ.
+//! A body that varies seen from a contact frame: the height ζ of a rail along the track, or of a wheel around its axle.
 //!
 //! A line along ζ meets the surface at a foot, which Newton's method finds on one strip from a place near it. Such places come from
-//! sections at equal steps along the track: runs of points over which the surface faces the wheel.
+//! sections at equal steps along the surface: runs of points over which it faces the other body.
 
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Unit, Vector3};
 
-use super::bicubic::SurfacePoint;
+use super::around::LoftedWheel;
 use super::build::Loft;
+use super::space::{Laid, SpacePoint};
 use super::strip::Strip;
-use crate::profile::{Profile, Section, Segment, Side};
+use crate::error::Result;
+use crate::profile::{self, Profile, Section, Segment, Side};
 
-/// Distance along the track of the sections from which feet are sought \[mm\].
+/// Distance along the surface of the sections from which feet are sought \[mm\].
 const LEVEL: f64 = 4.0;
 
-/// How far along the track from C the surface is looked at \[mm\]: farther than a wheel reaches.
+/// How far along the track from C a rail is looked at \[mm\]: farther than a wheel reaches.
 const FARTHEST: f64 = 4000.0;
+
+/// How far around the axle from C a wheel is looked at \[rad\].
+const FARTHEST_AROUND: f64 = 1.3;
+
+/// Slope of the surface at C in the frame from which on it touches with an edge: rounding of the place is below, kinks of drawings above.
+const EDGE: f64 = 1e-6;
 
 /// How far beyond the end of a run feet are sought from it \[mm\]: a part may be that much wider half a step along the track.
 const BESIDE: f64 = 2.0;
@@ -44,14 +52,19 @@ const ROUNDING: f64 = 1e-9;
 /// Distance \[mm\] along ζ by which another head stands in front, with a flangeway between.
 const FLANGEWAY: f64 = 10.0;
 
-/// A lofted rail in a contact frame: its origin is C, ξ lies across the track along the surface, η ahead along it, ζ along its normal.
+/// A body that varies in a contact frame: its origin is C, ξ lies across the track along the surface, η ahead along it, ζ along the normal
+/// from rail to wheel.
 #[derive(Debug, Clone)]
 pub struct FramedLoft {
     loft: Arc<Loft>,
-    /// C \[mm\]: x, y in the list's coordinate, z.
+    /// How the surface lies in the body's own axes.
+    laid: Laid,
+    /// C in the body's own axes \[mm\].
     origin: [f64; 3],
-    /// ξ, η and ζ in the axes of the slices.
+    /// ξ, η and ζ in the body's own axes.
     axes: [[f64; 3]; 3],
+    /// Coordinate of C along the surface \[mm\].
+    along: f64,
     /// Sections at equal steps, made when they are asked for.
     levels: Vec<OnceLock<Vec<Run>>>,
     /// Number of the first section, in steps from C.
@@ -87,7 +100,7 @@ pub struct LoftFoot {
 /// Feet of lines close to each other, each found from the one before.
 #[derive(Debug)]
 pub struct Feet<'a> {
-    rail: &'a FramedLoft,
+    body: &'a FramedLoft,
     /// The last foot, and its (ξ, η) \[mm\].
     last: Option<(LoftFoot, [f64; 2])>,
 }
@@ -97,21 +110,72 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl FramedLoft {
-    /// Looks at a surface from C \[mm\], where its normal leans by θ \[rad\] to the left and by ν \[rad\] ahead: it is
-    /// (−sinθ cosν, sinν, cosθ cosν).
+    /// Accuracy of the height of a foot \[mm\] on bodies of usual size.
+    pub const ROUNDING: f64 = 1e-12;
+
+    /// Looks at a rail from C \[mm\], with y as its list counts, where its normal leans by θ \[rad\] to the left and by ν \[rad\] ahead:
+    /// it is (−sinθ cosν, sinν, cosθ cosν).
     ///
     /// # Errors
     /// None; those of making a profile of the tangent plane.
-    pub fn new(loft: Arc<Loft>, origin: [f64; 3], theta: f64, ahead: f64) -> crate::error::Result<Self> {
+    pub fn of_rail(loft: Arc<Loft>, origin: [f64; 3], theta: f64, ahead: f64) -> Result<Self> {
         let ((sin, cos), (rise, run)) = (theta.sin_cos(), ahead.sin_cos());
         let axes = [[cos, 0.0, sin], [rise * sin, run, -rise * cos], [-sin * run, rise, cos * run]];
-        let [from, to] = loft.reach().map(|y| (y - origin[1]).clamp(-FARTHEST, FARTHEST) / LEVEL);
+        Self::new(loft, Laid::Along(0.0), (origin, axes), origin[1])
+    }
+
+    /// Looks at a wheel from C, which lies at x and z \[mm\] of its profile's axes and at an angle around it \[rad\], as its slices count.
+    /// There the profile's tangent leans by θ_W \[rad\], the common normal by λ \[rad\] forward out of the meridian plane, and that
+    /// tangent lies at χ \[rad\] from ξ.
+    ///
+    /// # Errors
+    /// None; those of making a profile of the tangent plane.
+    pub fn of_wheel(
+        wheel: &LoftedWheel,
+        ([x, z], around): ([f64; 2], f64),
+        [theta, lean, skew]: [f64; 3],
+    ) -> Result<Self> {
+        let ((sin, cos), (forward, up)) = (theta.sin_cos(), lean.sin_cos());
+        let (meridian, ahead) = ([cos, 0.0, sin], [sin * forward, up, -cos * forward]);
+        let turned = |a: f64, b: f64| [0, 1, 2].map(|k| a * meridian[k] + b * ahead[k]);
+        let axes =
+            [turned(skew.cos(), -skew.sin()), turned(skew.sin(), skew.cos()), [-sin * up, forward, cos * up]];
+        let upside_down = |[x, y, z]: [f64; 3]| [x, y, -z];
+        let along = wheel.radius * around;
+        let laid = Laid::Around { radius: wheel.radius, lowest: along };
+        Self::new(Arc::clone(&wheel.loft), laid, ([x, 0.0, -z], axes.map(upside_down)), along)
+    }
+
+    fn new(
+        loft: Arc<Loft>,
+        laid: Laid,
+        (origin, axes): ([f64; 3], [[f64; 3]; 3]),
+        along: f64,
+    ) -> Result<Self> {
+        let farthest = match laid {
+            Laid::Along(_) => FARTHEST,
+            Laid::Around { radius, .. } => FARTHEST_AROUND * radius,
+        };
+        let [from, to] = loft.reach().map(|y| (y - along).clamp(-farthest, farthest) / LEVEL);
         let (first, last) = (from.floor() as i64, to.ceil() as i64);
         let levels = (first..=last).map(|_| OnceLock::new()).collect();
-        let line = crate::profile::Arc::line([-FARTHEST, 0.0], [FARTHEST, 0.0])?;
+        let line = profile::Arc::line([-FARTHEST, 0.0], [FARTHEST, 0.0])?;
         let plane = Profile::new("tangent plane", "", vec![Segment::arc(line)])?;
         let plane = Section::own_axes(&plane, Side::Rail);
-        Ok(Self { loft, origin, axes, levels, first, plane })
+        Ok(Self { loft, laid, origin, axes, along, levels, first, plane })
+    }
+
+    /// Which body it is.
+    pub fn side(&self) -> Side {
+        match self.laid {
+            Laid::Along(_) => Side::Rail,
+            Laid::Around { .. } => Side::Wheel,
+        }
+    }
+
+    /// How the surface lies in the body's own axes.
+    pub fn laid(&self) -> Laid {
+        self.laid
     }
 
     /// The surface.
@@ -119,12 +183,12 @@ impl FramedLoft {
         &self.loft
     }
 
-    /// C \[mm\]: x, y in the list's coordinate, z.
+    /// C in the body's own axes \[mm\]; y of a rail as its list counts.
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
 
-    /// The directions of ξ, η and ζ in the axes of the slices.
+    /// The directions of ξ, η and ζ in the body's own axes.
     pub fn axes(&self) -> [[f64; 3]; 3] {
         self.axes
     }
@@ -134,27 +198,58 @@ impl FramedLoft {
         &self.plane
     }
 
-    /// Takes a point \[x, y, z\] of the slices' axes into the frame \[mm\].
+    /// The coordinate of C along the surface \[mm\]: as the list of a rail counts, or R times the angle around a wheel.
+    pub fn along(&self) -> f64 {
+        self.along
+    }
+
+    /// Returns the coordinate along the surface \[mm\] about which a line along ζ meets it.
+    pub fn along_at(&self, xi: f64, eta: f64) -> f64 {
+        let ahead = self.axes[0][1] * xi + self.axes[1][1] * eta;
+        match self.laid {
+            Laid::Along(_) => self.along + ahead.clamp(-FARTHEST, FARTHEST),
+            Laid::Around { radius, .. } => {
+                let farthest = FARTHEST_AROUND.sin();
+                self.along + radius * (ahead / (radius + self.origin[2])).clamp(-farthest, farthest).asin()
+            }
+        }
+    }
+
+    /// Takes a point \[mm\] of the body's own axes into the frame.
     pub fn seen(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let from = [x - self.origin[0], y - self.origin[1], z - self.origin[2]];
         self.axes.map(|axis| dot(axis, from))
     }
 
-    /// Finds the foot at (ξ, η) \[mm\]; `None` where the rail has no surface that faces the wheel.
+    /// Takes a point \[x, z\] of a section at y \[mm\] into the frame.
+    pub fn seen_from(&self, at: [f64; 2], y: f64) -> [f64; 3] {
+        self.seen(self.laid.place(at, y))
+    }
+
+    /// The point (ξ, η, ζ) \[mm\] of a strip, and its derivatives with respect to u and y there.
+    pub fn seen_at(&self, strip: &Strip, u: f64, y: f64) -> [[f64; 3]; 3] {
+        let p = self.laid.point(strip.point(u, y));
+        let [across, along] = self.tangents(&p);
+        [self.seen(p.at), across, along]
+    }
+
+    /// Finds the foot at (ξ, η) \[mm\]; `None` where the body has no surface that faces the other one.
     ///
     /// Where a line meets several sheets, that nearest to the tangent plane counts, or one up to 10 mm in front of it: what stands farther
     /// in front belongs to another head. Accuracy: ζ within 1e-12 mm and slopes within 1e-10 on rails of usual size.
     pub fn foot(&self, xi: f64, eta: f64) -> Option<LoftFoot> {
-        let middle = self.nearest_level(eta);
-        let alone = self.is_alone(xi, middle);
+        let (middle, near) = (self.nearest_level(xi, eta), self.along_at(xi, eta));
         let mut feet: Vec<LoftFoot> = Vec::new();
         for level in [middle, middle - 1, middle + 1] {
-            if alone && !feet.is_empty() {
+            if feet.first().is_some_and(|foot| self.is_alone(foot.strip, xi, middle)) {
                 break;
             }
             for run in self.level(level).iter().filter(|run| run.holds(xi)) {
-                let y = self.origin[1] + LEVEL * level as f64;
+                let y = self.along + LEVEL * level as f64;
                 let [from, to] = self.loft.strips[run.strip].reach();
+                if near < from - LEVEL || near > to + LEVEL {
+                    continue;
+                }
                 let Some(foot) = self.settle(run.strip, [run.place(xi), y.clamp(from, to)], xi, eta) else {
                     continue;
                 };
@@ -164,27 +259,31 @@ impl FramedLoft {
             }
         }
         feet.sort_by(|a, b| a.zeta.total_cmp(&b.zeta));
+        if self.side() == Side::Wheel {
+            feet.reverse();
+        }
         let own = (0..feet.len()).min_by(|&a, &b| feet[a].zeta.abs().total_cmp(&feet[b].zeta.abs()))?;
-        let front =
-            (own + 1..feet.len()).take_while(|&k| feet[k].zeta - feet[k - 1].zeta <= FLANGEWAY).last();
+        let front = (own + 1..feet.len())
+            .take_while(|&k| (feet[k].zeta - feet[k - 1].zeta).abs() <= FLANGEWAY)
+            .last();
         Some(feet[front.unwrap_or(own)])
     }
 
-    /// Number of the section nearest to η \[mm\], in steps from C.
-    fn nearest_level(&self, eta: f64) -> i64 {
-        (self.axes[1][1] * eta.clamp(-FARTHEST, FARTHEST) / LEVEL).round() as i64
+    /// Number of the section nearest to a line along ζ, in steps from C.
+    fn nearest_level(&self, xi: f64, eta: f64) -> i64 {
+        ((self.along_at(xi, eta) - self.along) / LEVEL).round() as i64
     }
 
-    /// The point of the surface at a foot.
-    pub fn point(&self, foot: &LoftFoot) -> SurfacePoint {
-        self.loft.strips[foot.strip].point(foot.place[0], foot.place[1])
+    /// The point of a strip in space.
+    fn point(&self, strip: &Strip, [u, y]: [f64; 2]) -> SpacePoint {
+        self.laid.point(strip.point(u, y))
     }
 
-    /// ∂²ζ/∂ξ², ∂²ζ/∂ξ∂η and ∂²ζ/∂η² at C \[1/mm\]; `None` without a surface there.
+    /// ∂²ζ/∂ξ², ∂²ζ/∂ξ∂η and ∂²ζ/∂η² at C \[1/mm\]; `None` without a surface there, and where it touches with an edge.
     pub fn bends(&self) -> Option<[f64; 3]> {
-        let foot = self.foot(0.0, 0.0)?;
-        let p = self.point(&foot);
-        let up = |v: [f64; 2]| dot(self.axes[2], [v[0], 0.0, v[1]]);
+        let foot = self.foot(0.0, 0.0).filter(|foot| foot.slopes.iter().all(|slope| slope.abs() < EDGE))?;
+        let p = self.point(&self.loft.strips[foot.strip], foot.place);
+        let up = |v: [f64; 3]| dot(self.axes[2], v);
         let (l, m, n) = (up(p.across2), up(p.mixed), up(p.along2));
         let [per_xi, per_eta] = foot.steps;
         let form =
@@ -193,10 +292,8 @@ impl FramedLoft {
     }
 
     /// ∂/∂u and ∂/∂y of a point in the frame.
-    fn tangents(&self, p: &SurfacePoint) -> [[f64; 3]; 2] {
-        let across = [p.across[0], 0.0, p.across[1]];
-        let along = [p.along[0], 1.0, p.along[1]];
-        [across, along].map(|v| self.axes.map(|axis| dot(axis, v)))
+    fn tangents(&self, p: &SpacePoint) -> [[f64; 3]; 2] {
+        [p.across, p.along].map(|v| self.axes.map(|axis| dot(axis, v)))
     }
 
     /// Follows one strip to the foot at (ξ, η); `None` if it has none there that faces the wheel.
@@ -204,8 +301,8 @@ impl FramedLoft {
         let own = &self.loft.strips[strip];
         let (mut least, mut waited) = (f64::INFINITY, 0);
         for _ in 0..STEPS {
-            let p = own.point(place[0], place[1]);
-            let at = self.seen([p.at[0], place[1], p.at[1]]);
+            let p = self.point(own, place);
+            let at = self.seen(p.at);
             let [a, b] = self.tangents(&p);
             let det = a[0] * b[1] - a[1] * b[0];
             let [off, ahead] = [xi - at[0], eta - at[1]];
@@ -239,15 +336,22 @@ impl FramedLoft {
         None
     }
 
-    /// Whether only one run is near ξ in the sections around a level.
-    fn is_alone(&self, xi: f64, level: i64) -> bool {
-        let count = |level| self.level(level).iter().filter(|run| run.holds(xi)).count();
-        (level - 1..=level + 1).all(|level| count(level) == 1)
+    /// Whether no other sheet than that of a strip is near ξ in the sections around a level: parts beside it join it at their ends.
+    fn is_alone(&self, strip: usize, xi: f64, level: i64) -> bool {
+        let part = |strip: usize| self.loft.strips[strip].part;
+        (level - 1..=level + 1).all(|level| {
+            let mut last = None;
+            self.level(level).iter().filter(|run| run.holds(xi)).all(|run| {
+                let folds = last.replace(run.strip) == Some(run.strip);
+                let apart = part(run.strip).abs_diff(part(strip));
+                !folds && (apart == 0 || apart == 1 && !run.covers(xi))
+            })
+        })
     }
 
-    /// The range of ξ \[mm\] over which the surface faces the wheel between two η \[mm\]; `None` if it does so nowhere.
+    /// The range of ξ \[mm\] over which the surface faces the other body between two η \[mm\]; `None` if it does so nowhere.
     pub fn reach(&self, eta: [f64; 2]) -> Option<[f64; 2]> {
-        let [from, to] = eta.map(|eta| self.nearest_level(eta));
+        let [from, to] = eta.map(|eta| self.nearest_level(0.0, eta));
         let runs = (from..=to).flat_map(|level| self.level(level));
         let reach = runs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], run| {
             [low.min(run.xi[0]), high.max(run.xi[run.xi.len() - 1])]
@@ -262,7 +366,7 @@ impl FramedLoft {
 
     /// Finds the runs in the section at `ahead` \[mm\] of C.
     fn runs(&self, ahead: f64) -> Vec<Run> {
-        let y = self.origin[1] + ahead;
+        let y = self.along + ahead;
         let mut runs: Vec<Run> = Vec::new();
         for (strip, own) in self.loft.strips.iter().enumerate() {
             let [from, to] = own.reach();
@@ -273,8 +377,7 @@ impl FramedLoft {
             let y = y.clamp(from, to);
             let mut open = false;
             for node in 0..=own.cells() {
-                let [x, z] = own.point(node as f64, y).at;
-                let xi = dot(self.axes[0], [x - self.origin[0], 0.0, z - self.origin[2]]);
+                let xi = self.seen(self.point(own, [node as f64, y]).at)[0];
                 match runs.last_mut().filter(|_| open) {
                     Some(run) if run.xi[run.xi.len() - 1] < xi => run.xi.push(xi),
                     _ => runs.push(Run { strip, first: node, xi: vec![xi] }),
@@ -295,29 +398,35 @@ fn on(strip: &Strip, [u, y]: [f64; 2]) -> bool {
 
 impl<'a> Feet<'a> {
     /// Begins without a foot.
-    pub fn new(rail: &'a FramedLoft) -> Self {
-        Self { rail, last: None }
+    pub fn new(body: &'a FramedLoft) -> Self {
+        Self { body, last: None }
+    }
+
+    /// Forgets the last foot, so that what comes next has the same bits whatever was before.
+    pub fn forget(&mut self) {
+        self.last = None;
     }
 
     /// Finds the foot at (ξ, η) \[mm\], as [`FramedLoft::foot`] does.
     pub fn at(&mut self, xi: f64, eta: f64) -> Option<LoftFoot> {
         let near = self.last.as_ref().map(|(foot, at)| (foot, [xi - at[0], eta - at[1]]));
         let near = near.filter(|(_, step)| step.iter().all(|step| step.abs() <= CLOSE));
-        let near = near.filter(|_| self.rail.is_alone(xi, self.rail.nearest_level(eta)));
-        let beside = near.and_then(|(foot, step)| self.rail.settle(foot.strip, foot.moved(step), xi, eta));
-        let foot = beside.or_else(|| self.rail.foot(xi, eta))?;
+        let level = self.body.nearest_level(xi, eta);
+        let near = near.filter(|(foot, _)| self.body.is_alone(foot.strip, xi, level));
+        let beside = near.and_then(|(foot, step)| self.body.settle(foot.strip, foot.moved(step), xi, eta));
+        let foot = beside.or_else(|| self.body.foot(xi, eta))?;
         self.last = Some((foot, [xi, eta]));
         Some(foot)
     }
 
-    /// Computes ζ(ξ, η) \[mm\]; NaN where the rail has no surface that faces the wheel.
+    /// Computes ζ(ξ, η) \[mm\]; NaN where the body has no surface that faces the other one.
     pub fn height(&mut self, xi: f64, eta: f64) -> f64 {
         self.at(xi, eta).map_or(f64::NAN, |foot| foot.zeta)
     }
 }
 
 impl LoftFoot {
-    /// The surface's outward (upward) unit normal (ξ, η, ζ).
+    /// The upward unit normal (ξ, η, ζ): a rail's outward one, a wheel's inward one.
     pub fn normal(&self) -> Unit<Vector3<f64>> {
         Unit::new_normalize(Vector3::new(-self.slopes[0], -self.slopes[1], 1.0))
     }
@@ -331,6 +440,11 @@ impl LoftFoot {
 impl Run {
     fn holds(&self, xi: f64) -> bool {
         self.xi[0] - BESIDE <= xi && xi <= self.xi[self.xi.len() - 1] + BESIDE
+    }
+
+    /// Whether ξ \[mm\] lies in it, off its ends.
+    fn covers(&self, xi: f64) -> bool {
+        self.xi[0] < xi && xi < self.xi[self.xi.len() - 1]
     }
 
     /// The parameter u at ξ \[mm\], by straight lines.

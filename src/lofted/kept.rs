@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::bicubic::{Bicubic, SurfacePoint, hermite};
 use super::tree::tree;
 use crate::numerics::interval::product;
-use crate::profile::{Mark, Profile, trace};
+use crate::profile::{Mark, Profile, Shape, trace};
 
 /// Largest cell across \[mm\]: its cubic is off by 0.1 nm on a 13 mm radius.
 const CELL: f64 = 0.5;
@@ -33,10 +33,12 @@ pub(super) struct Curve {
 }
 
 /// A cell: a range of one segment's shares, with point and derivative at its ends.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Cell {
     segment: usize,
     shares: [f64; 2],
+    /// Coefficients of x and z in powers of the share of the cell, on a polynomial; none on an arc or a line.
+    powers: Option<[Vec<f64>; 2]>,
     ends: [[[f64; 2]; 2]; 2],
 }
 
@@ -91,7 +93,11 @@ impl Curve {
                     let [at, rate, _] = profile.segments()[segment].at_share(share);
                     [at, rate.map(|rate| rate / count)]
                 });
-                let cell = Cell { segment, shares, ends };
+                let powers = match &profile.segments()[segment].shape {
+                    Shape::Polynomial(polynomial) => Some(polynomial.over(shares)),
+                    Shape::Arc(_) => None,
+                };
+                let cell = Cell { segment, shares, powers, ends };
                 for f in INSIDE {
                     let ([exact, ..], [near, ..]) = (cell.point(profile, f), cell.near(f));
                     off = off.max((exact[0] - near[0]).abs()).max((exact[1] - near[1]).abs());
@@ -126,9 +132,22 @@ fn cubic(share: f64, step: f64, [[a, from], [b, to]]: [[f64; 2]; 2]) -> [f64; 3]
     })
 }
 
+/// The value of Σ c_k f^k, and its first two derivatives.
+fn value_and_derivatives(c: &[f64], f: f64) -> [f64; 3] {
+    let [value, rate, half] = c
+        .iter()
+        .rev()
+        .fold([0.0; 3], |[value, rate, half], &c| [value * f + c, rate * f + value, half * f + rate]);
+    [value, rate, 2.0 * half]
+}
+
 impl Cell {
     /// Point and first two derivatives at a share.
     fn point(&self, profile: &Profile, f: f64) -> [[f64; 2]; 3] {
+        if let Some(powers) = &self.powers {
+            let axes = powers.each_ref().map(|c| value_and_derivatives(c, f));
+            return [0, 1, 2].map(|k| axes.map(|values| values[k]));
+        }
         let width = self.shares[1] - self.shares[0];
         let [at, rate, bend] = profile.segments()[self.segment].at_share(self.shares[0] + f * width);
         [at, rate.map(|v| v * width), bend.map(|v| v * width * width)]

@@ -16,6 +16,10 @@
 //! A wheel with a flat or a radius that varies has a closed form: its points are those of the profile's own segments, their heights those
 //! of a chord, a circle or a periodic spline. Bicubics beside it bound it, with what they are off.
 
+use std::sync::Arc;
+
+use crate::profile::Side;
+
 mod around;
 mod bicubic;
 mod build;
@@ -23,6 +27,7 @@ mod framed;
 mod joining;
 mod kept;
 mod section;
+mod space;
 mod strip;
 mod tree;
 
@@ -32,5 +37,42 @@ pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, SPACING, Slice};
 pub use framed::{Feet, FramedLoft, LoftFoot};
 pub use joining::Joining;
-pub use section::section;
+pub use section::{joined, section};
+pub use space::{Laid, SpacePoint};
+pub(crate) use space::{directions, on_wheel};
 pub use strip::{Interval, Strip};
+
+/// The body of a pair that varies.
+#[derive(Debug, Clone)]
+pub enum LoftedBody {
+    /// A rail, along the track.
+    Rail(Arc<Loft>),
+    /// A wheel, around its axle.
+    Wheel(Arc<LoftedWheel>),
+}
+
+impl LoftedBody {
+    /// Which body it is.
+    pub fn side(&self) -> Side {
+        match self {
+            Self::Rail(_) => Side::Rail,
+            Self::Wheel(_) => Side::Wheel,
+        }
+    }
+
+    /// Names such a body, as messages do.
+    pub fn name(side: Side) -> &'static str {
+        match side {
+            Side::Rail => "a rail that varies along the track",
+            Side::Wheel => "a wheel that varies around its axle",
+        }
+    }
+
+    /// Where its slices leave the surface undefined, and why.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Self::Rail(loft) => &loft.warnings,
+            Self::Wheel(wheel) => wheel.warnings(),
+        }
+    }
+}

@@ -12,21 +12,27 @@ use crate::profile::{Polynomial, Profile, Segment, Shape};
 /// A place where the strip has no surface.
 pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
     let strips = &loft.strips;
-    let here = |k: usize| (strips[k].reach()[0]..=strips[k].reach()[1]).contains(&y);
-    if !here(strip) {
+    if !strips[strip].holds(y) {
         let [from, to] = strips[strip].reach();
         let expected = format!("a place from {from} to {to} mm, where this part of the rail is");
         return Err(Error::new("along", format!("{y:?} mm"), expected, "choose another place"));
     }
+    let run = joined(loft, strip, y);
+    let segments = run.into_iter().flat_map(|k| spans(&strips[k], y)).collect::<Result<Vec<_>>>()?;
+    Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
+}
+
+/// Lists the strips that join each other across at y \[mm\] from one of them, by ascending x.
+pub fn joined(loft: &Loft, strip: usize, y: f64) -> Vec<usize> {
+    let strips = &loft.strips;
     let beside = |part: Option<usize>| {
-        part.and_then(|part| (0..strips.len()).find(|&k| strips[k].part == part && here(k)))
+        part.and_then(|part| (0..strips.len()).find(|&k| strips[k].part == part && strips[k].holds(y)))
     };
     let before = std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_sub(1)));
     let mut run: Vec<usize> = before.collect();
     run.reverse();
     run.extend(std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_add(1))).skip(1));
-    let segments = run.into_iter().flat_map(|k| spans(&strips[k], y)).collect::<Result<Vec<_>>>()?;
-    Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
+    run
 }
 
 /// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out.

@@ -93,6 +93,12 @@ impl Strip {
         [self.at[0], self.at[self.at.len() - 1]]
     }
 
+    /// Whether it has a surface at y \[mm\].
+    pub fn holds(&self, y: f64) -> bool {
+        let [from, to] = self.reach();
+        (from..=to).contains(&y)
+    }
+
     /// The intervals between its slices, in order.
     pub fn intervals(&self) -> impl Iterator<Item = Interval<'_>> {
         (1..self.at.len()).map(|k| self.interval(k - 1))

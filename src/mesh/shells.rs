@@ -12,7 +12,7 @@ use crate::profile::{Profile, Station, trace};
 /// How far a shell is carried beyond what the profile describes \[mm\], so that it has a back.
 const BACK: f64 = 20.0;
 
-/// Steps along and across the track of the shells of rails that vary \[mm\].
+/// Steps along and across the shells of bodies that vary \[mm\].
 const ALONG: f64 = 10.0;
 const ACROSS: f64 = 1.0;
 
@@ -42,7 +42,7 @@ impl BodyShell {
             let half_angle = (half_length / under.rolling_radius()).min(PI);
             return Self::wheel(under, half_angle, tolerance).upside_down();
         }
-        if let Some(lofted) = placement.lofted() {
+        if let Some(lofted) = placement.lofted_rail() {
             return Self::lofted(lofted, half_length);
         }
         let stations = outline(placement.rail().profile(), tolerance);
@@ -62,6 +62,11 @@ impl BodyShell {
     /// surface departs from the wheel's by at most `tolerance` \[mm\], or by a hundred-thousandth of its size, and the outline is
     /// closed above the profile.
     pub fn wheel(placement: &Placement, half_angle: f64, tolerance: f64) -> Self {
+        if let Some(lofted) = placement.lofted_wheel() {
+            let mut rim = Self::lofted(lofted, half_angle * placement.wheel_radius());
+            rim.faces.iter_mut().for_each(|face| face.reverse());
+            return rim;
+        }
         let tolerance = tolerance.max(FINEST * placement.rolling_radius());
         let stations = outline(placement.wheel().profile(), tolerance);
         let high = stations.iter().map(|station| station.z).fold(f64::NEG_INFINITY, f64::max) + BACK;
@@ -75,9 +80,9 @@ impl BodyShell {
         Self::swept((0..=count as usize).map(turned).collect())
     }
 
-    /// Makes the parts of a rail that varies, as far along the track from C, each closed below.
+    /// Makes the parts of a body that varies, as far along its surface from C, each closed inside the body.
     fn lofted(lofted: &FramedLoft, half_length: f64) -> Self {
-        let middle = lofted.origin()[1];
+        let (middle, deepest) = (lofted.along(), -lofted.laid().radius());
         let mut all = Self { points: Vec::new(), faces: Vec::new() };
         for strip in &lofted.loft().strips {
             let [from, to] = strip.reach();
@@ -93,10 +98,11 @@ impl BodyShell {
             };
             let outlines: Vec<Vec<[f64; 2]>> = (0..=sections).map(|j| outline(at(j))).collect();
             let low = outlines.iter().flatten().map(|at| at[1]).fold(f64::INFINITY, f64::min) - BACK;
+            let low = low.max(deepest);
             let points = |(j, outline): (usize, Vec<[f64; 2]>)| {
                 let corners = [outline[nodes], outline[0]].map(|[x, _]| [x, low]);
                 let all = outline.into_iter().chain(corners);
-                all.map(|[x, z]| Point3::from(lofted.seen([x, at(j), z]))).collect()
+                all.map(|from| Point3::from(lofted.seen_from(from, at(j)))).collect()
             };
             let part = Self::swept(outlines.into_iter().enumerate().map(points).collect());
             let first = all.points.len();
@@ -131,6 +137,9 @@ impl BodyShell {
 
 /// Gives the point of the axle in the wheel profile's plane x \[mm\], in the contact frame \[mm\].
 pub fn axle_point(placement: &Placement, x: f64) -> Point3<f64> {
+    if let Some(lofted) = placement.lofted_wheel() {
+        return Point3::from(lofted.seen([x, 0.0, -placement.wheel_radius()]));
+    }
     wheel_point(placement, &Station { x, z: placement.wheel_radius(), ..Station::AXES }, 0.0)
 }
 

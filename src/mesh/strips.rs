@@ -224,7 +224,7 @@ impl StripBuilder<'_> {
     /// Returns the indices of the points of one strip edge between two η \[mm\], ascending in η. They are equal if the edge has no width.
     fn row(&mut self, shares: &[f64], xi: f64, eta: [f64; 2]) -> Vec<usize> {
         let profile = self.placement.rail().section.height(xi);
-        let on_roller = self.placement.under().is_some() || self.placement.lofted().is_some();
+        let on_roller = self.placement.under().is_some() || self.placement.lofted_rail().is_some();
         let mut lifted = |eta: f64| {
             let zeta = if on_roller { self.evaluator.lower_height(xi, eta) } else { profile };
             Point3::new(xi, eta, zeta)

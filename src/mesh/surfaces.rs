@@ -7,7 +7,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3, distance_squared};
 
 use crate::error::{Error, ErrorKind, Result, finite};
-use crate::lofted::FramedLoft;
+use crate::lofted::{FramedLoft, Strip, joined};
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
@@ -30,7 +30,7 @@ const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
 /// the surface becomes vertical.
 const WIDEST: f64 = 0.5;
 
-/// Step along the track over a rail that varies \[mm\]; across it has the surface's own cells.
+/// Step along the track over a rail that varies, and around a wheel that does \[mm\]; across they have their surface's own cells.
 const CELL: f64 = 0.5;
 
 /// Distance of a point from the surface that s sees, as a share of the profile's extent, below which it is on it: a thousand
@@ -95,7 +95,7 @@ impl Surface {
         if let Some(under) = placement.under() {
             return Self::wheel(under, window, tolerance).map(Self::upside_down);
         }
-        if let Some(lofted) = placement.lofted() {
+        if let Some(lofted) = placement.lofted_rail() {
             return Self::lofted(lofted, window);
         }
         let stations = trace(placement.rail(), window.xi, tolerance)?;
@@ -113,33 +113,48 @@ impl Surface {
         Self::of(Side::Rail, &stations, along.len(), nodes)
     }
 
-    /// Makes the surface of the part of a rail that varies which C lies on, over its own cells.
+    /// Makes the surface of a body that varies over its own cells: of the parts that join each other across at C, as far ahead and behind
+    /// as all of them go.
     fn lofted(lofted: &FramedLoft, window: &Window) -> Result<Self> {
-        let nowhere = || Error::new("surface", "no surface of the rail at C", "one", "choose another place");
+        let nowhere = || Error::new("surface", "no surface of the body at C", "one", "choose another place");
         let foot = lofted.foot(0.0, 0.0).ok_or_else(nowhere)?;
-        let strip = &lofted.loft().strips[foot.strip];
-        let [first, last] = strip.reach();
-        let [along, ahead] = [lofted.origin()[1], lofted.axes()[1][1]];
+        let (side, strips, along) = (lofted.side(), &lofted.loft().strips, foot.place[1]);
+        let parts = joined(lofted.loft(), foot.strip, along);
+        let at = |part: usize, y: f64| {
+            let same =
+                |strip: &&Strip| strip.part == strips[part].part && strip.cells() == strips[part].cells();
+            strips.iter().filter(same).find(|strip| strip.holds(y))
+        };
         let eta = [window.eta[0].min(0.0), window.eta[1].max(0.0)];
-        let [from, to] = eta.map(|eta| (along + ahead * eta).clamp(first, last));
+        let [from, to] = eta.map(|eta| lofted.along_at(0.0, eta));
         let steps = ((to - from) / CELL).ceil().max(1.0);
-        let places: Vec<f64> = (0..=steps as usize).map(|k| from + (to - from) * k as f64 / steps).collect();
-        let inside = |u: f64| {
-            let [x, z] = strip.point(u, along.clamp(first, last)).at;
-            let xi = lofted.seen([x, along, z])[0];
+        let mut places: Vec<f64> =
+            (0..=steps as usize).map(|k| from + (to - from) * k as f64 / steps).chain([along]).collect();
+        let ends = strips.iter().flat_map(Strip::reach).filter(|end| (from..=to).contains(end));
+        places.extend(ends);
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let whole = |y: &f64| parts.iter().all(|&part| at(part, *y).is_some());
+        let middle = places.partition_point(|y| *y < along);
+        let behind = places[..middle].iter().rev().take_while(|y| whole(y)).count();
+        let ahead = places[middle..].iter().take_while(|y| whole(y)).count();
+        let places = &places[middle - behind..middle + ahead];
+        let inside = |&(part, u): &(usize, f64)| {
+            let [xi, ..] = lofted.seen_from(strips[part].point(u, along).at, along);
             window.xi[0].min(0.0) <= xi && xi <= window.xi[1].max(0.0)
         };
-        let nodes: Vec<f64> = (0..=strip.cells()).map(|k| k as f64).filter(|&u| inside(u)).collect();
+        let all = parts.iter().flat_map(|&part| (0..=strips[part].cells()).map(move |k| (part, k as f64)));
+        let nodes: Vec<(usize, f64)> = all.filter(inside).collect();
         bounded(nodes.len() as f64 * places.len() as f64)?;
-        let node = |u: f64, y: f64| {
-            let p = strip.point(u, y);
-            let [across, along] = [[p.across[0], 0.0, p.across[1]], [p.along[0], 1.0, p.along[1]]]
-                .map(|v| Vector3::from(lofted.axes().map(|axis| Vector3::from(axis).dot(&Vector3::from(v)))));
-            (Point3::from(lofted.seen([p.at[0], y, p.at[1]])), across.cross(&along).normalize())
+        let upward = if side == Side::Rail { 1.0 } else { -1.0 };
+        let node = |&(part, u): &(usize, f64), y: f64| {
+            let strip = at(part, y).unwrap_or(&strips[part]);
+            let [point, across, along] = lofted.seen_at(strip, u, y).map(Vector3::from);
+            (Point3::from(point), upward * across.cross(&along).normalize())
         };
-        let all = nodes.iter().flat_map(|&u| places.iter().map(move |&y| node(u, y)));
+        let all = nodes.iter().flat_map(|at| places.iter().map(move |&y| node(at, y)));
         let (points, normals) = all.unzip();
-        Ok(Self { side: Side::Rail, n: [nodes.len(), places.len()], points, normals })
+        Ok(Self { side, n: [nodes.len(), places.len()], points, normals })
     }
 
     /// Makes the wheel's surface, before any approach, over a window of the contact frame, as far as its profile goes. C is
@@ -150,6 +165,9 @@ impl Surface {
     /// A window that is not finite or wider than the wheel; a tolerance that is not positive, or takes too many points.
     pub fn wheel(placement: &Placement, window: &Window, tolerance: f64) -> Result<Self> {
         check(placement, window, tolerance)?;
+        if let Some(lofted) = placement.lofted_wheel() {
+            return Self::lofted(lofted, window);
+        }
         let own = in_wheel_directions(placement, window);
         let stations = trace(placement.wheel(), own.xi, tolerance / 2.0)?;
         let radii = || stations.iter().map(|s| placement.wheel_radius() - s.z);

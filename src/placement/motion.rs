@@ -105,13 +105,13 @@ impl Motion {
     /// assumed. The part of the velocity along ζ does not enter: it opens or closes the contact.
     ///
     /// # Errors
-    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known; a rail that varies.
+    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known; a body that varies.
     pub fn creepages(&self, placement: &Placement, half: f64, radius: f64) -> Result<Creepages> {
         if placement.under().is_some() {
             return Err(on_roller());
         }
-        if placement.lofted().is_some() {
-            return Err(on_varying_rail());
+        if let Some(varying) = placement.varying() {
+            return Err(with_varying(varying));
         }
         let Rates { lateral, vertical, yaw, roll, pitch } = self.rates;
         let pitch = match pitch {
@@ -168,9 +168,9 @@ pub(crate) fn on_roller() -> Error {
 }
 
 /// Returns the error of a motion over a rail that varies along the track.
-pub(crate) fn on_varying_rail() -> Error {
-    let expected = "rails of one profile each; creepages are not available for others yet";
-    Error::new("motion", "a motion over a rail that varies", expected, "leave the motion out")
+pub(crate) fn with_varying(name: &str) -> Error {
+    let expected = "bodies of one profile each; creepages are not available for others yet";
+    Error::new("motion", format!("a motion with {name}"), expected, "leave the motion out")
 }
 
 /// Directions in the contact frame (ξ, η, ζ), all of length 1.

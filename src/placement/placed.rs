@@ -7,7 +7,7 @@ use nalgebra::{Isometry2, Point2, Translation2, UnitComplex};
 use super::along::wheel_along;
 use super::swept::{Generator, Swept};
 use crate::error::{Error, Result, finite};
-use crate::lofted::FramedLoft;
+use crate::lofted::{FramedLoft, LoftedBody};
 use crate::profile::{Profile, ProfilePoint, Section, Side};
 
 /// One body of a placed pair.
@@ -49,7 +49,8 @@ pub struct Placement {
     at_contact: bool,
     /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward; 0 on a rail.
     turn: f64,
-    /// The rail's surface where it varies along the track; the rail's profile is then its section through C.
+    /// The surface of a rail that varies along the track, or of a wheel that varies around its axle; its profile is then the section
+    /// through C.
     lofted: Option<Arc<FramedLoft>>,
     /// How far the frame's origin lies ahead of C along η \[mm\].
     ahead: f64,
@@ -108,6 +109,15 @@ impl Pair {
             Generator::Revolved { radius } => Swept::revolved(profile, Side::Rail, radius)?,
         };
         Ok(Self { rail: Arc::new(rail), wheel: Arc::clone(&self.wheel) })
+    }
+
+    /// Returns the pair with another profile of its wheel.
+    ///
+    /// # Errors
+    /// A profile that reaches the wheel's axle.
+    pub fn with_wheel(&self, profile: Profile) -> Result<Self> {
+        let wheel = Swept::revolved(profile, Side::Wheel, self.wheel_radius())?;
+        Ok(Self { rail: Arc::clone(&self.rail), wheel: Arc::new(wheel) })
     }
 
     /// The profile of the rail or roller.
@@ -269,14 +279,30 @@ impl Placement {
         Self { turn, ..self }
     }
 
-    /// Puts the wheel over a rail that varies along the track, seen from this contact.
-    pub(crate) fn over_loft(self, lofted: Arc<FramedLoft>) -> Self {
+    /// Takes the surface of the body that varies, seen from this contact.
+    pub(crate) fn with_loft(self, lofted: Arc<FramedLoft>) -> Self {
         Self { lofted: Some(lofted), ..self }
     }
 
-    /// The surface of a rail that varies along the track, in the contact frame; `None` for a swept one.
+    /// The surface of the body that varies, a rail along the track or a wheel around its axle, in the contact frame; `None` where both
+    /// are swept.
     pub fn lofted(&self) -> Option<&FramedLoft> {
         self.lofted.as_deref()
+    }
+
+    /// That of a rail that varies along the track.
+    pub fn lofted_rail(&self) -> Option<&FramedLoft> {
+        self.lofted().filter(|lofted| lofted.side() == Side::Rail)
+    }
+
+    /// That of a wheel that varies around its axle.
+    pub fn lofted_wheel(&self) -> Option<&FramedLoft> {
+        self.lofted().filter(|lofted| lofted.side() == Side::Wheel)
+    }
+
+    /// Says which body varies, as messages do; `None` where both are swept.
+    pub fn varying(&self) -> Option<&'static str> {
+        self.lofted().map(|lofted| LoftedBody::name(lofted.side()))
     }
 
     /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward: the contact frame's ζ leans forward by it. On a rail that
@@ -356,18 +382,16 @@ impl Placement {
     /// what [`Self::ahead`] tells; the skew changes as well.
     ///
     /// # Errors
-    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line; a rail that varies along the
-    /// track.
+    /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line; a body that varies.
     pub fn reframed(&self, rail_x: f64, angle: f64) -> Result<Self> {
         if self.skew != 0.0 && self.rail.generator() != Generator::Extruded {
             let found = format!("a skew of {} rad over a roller", self.skew);
             let advice = "keep the frame of the contact point";
             return Err(Error::new("contact", found, "a wheel without yaw, or a rail", advice));
         }
-        if self.lofted.is_some() {
-            let expected = "a rail of one profile, whose sections are all alike";
-            let advice = "keep the frame of the contact point";
-            return Err(Error::new("contact", "a rail that varies along the track", expected, advice));
+        if let Some(varying) = self.varying() {
+            let expected = "bodies of one profile each, whose sections are all alike";
+            return Err(Error::new("contact", varying, expected, "keep the frame of the contact point"));
         }
         let mut point = self.rail.swept.point(rail_x).map_err(|e| e.within("contact: rail_x"))?;
         let here = self.rail.contact_frame();

@@ -110,6 +110,16 @@ impl Polynomial {
         2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
     }
 
+    /// Returns the coefficients of x and z \[mm\] in powers of the share of a part, which goes over these shares of the range.
+    pub(crate) fn over(&self, [first, last]: [f64; 2]) -> [Vec<f64>; 2] {
+        let [from, to] = self.t;
+        let unit = (last - first) * (to - from);
+        [&self.x, &self.z].map(|c| {
+            let about = recentred(c, Twice::from(from + first * (to - from)));
+            about.into_iter().zip(0..).map(|(c, power)| f64::from(c) * unit.powi(power)).collect()
+        })
+    }
+
     /// Returns the length per unit of the parameter at t.
     pub(super) fn speed(&self, t: f64) -> f64 {
         let [dx, dz] = self.rates(t);

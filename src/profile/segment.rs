@@ -5,8 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::arc::Arc;
 use super::polynomial::Polynomial;
 use super::station::Station;
-use crate::numerics::polynomial::recentred;
-use crate::numerics::twice::Twice;
 
 /// The curve of one segment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -76,13 +74,11 @@ impl Segment {
                 [[at.x, at.z], [length * at.cos, length * at.sin], [-bend * at.sin, bend * at.cos]]
             }
             Shape::Polynomial(polynomial) => {
-                let [from, to] = polynomial.t;
-                let about = [&polynomial.x, &polynomial.z]
-                    .map(|c| recentred(c, Twice::from(from + share * (to - from))));
-                let term = |k: usize, scale: f64| {
-                    [0, 1].map(|axis: usize| about[axis].get(k).map_or(0.0, |&c| scale * f64::from(c)))
+                let about = polynomial.over([share, share + 1.0]);
+                let term = |k: usize, factor: f64| {
+                    [0, 1].map(|axis: usize| about[axis].get(k).map_or(0.0, |c| factor * c))
                 };
-                [term(0, 1.0), term(1, to - from), term(2, 2.0 * (to - from).powi(2))]
+                [term(0, 1.0), term(1, 1.0), term(2, 2.0)]
             }
         }
     }

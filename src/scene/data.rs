@@ -87,6 +87,19 @@ impl Scene {
         }
     }
 
+    /// Gives how far wheels that vary are turned about their axle \[rad\]; 0 of a scene that does not say.
+    ///
+    /// # Errors
+    /// An angle that is not finite.
+    pub(super) fn pitch(&self) -> Result<f64> {
+        let of_wheel = self.contact.as_ref().and_then(|contact| contact.pitch);
+        match (&self.wheelset, of_wheel) {
+            (Some(wheelset), _) => finite("wheelset: pitch", wheelset.pitch),
+            (None, Some(pitch)) => finite("contact: pitch", pitch),
+            (None, None) => Ok(0.0),
+        }
+    }
+
     /// Lists the profiles that it describes, those of both sides and those of one.
     pub fn profiles(&self) -> impl Iterator<Item = &ProfileData> {
         let sides = [&self.left, &self.right].into_iter().flatten();
@@ -146,6 +159,9 @@ pub struct ContactData {
     /// Where the wheel's centre is along a rail that varies, mm, as its list of slices counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<f64>,
+    /// How far a wheel that varies has turned about its axle, rad, + forward at the bottom, so that what lies at −pitch is lowest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pitch: Option<f64>,
 }
 
 /// A track of two rails: the right one is as described, the left one is its mirror image.

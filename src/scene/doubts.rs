@@ -4,6 +4,7 @@ use super::data::{RollData, Scene};
 use super::profile_data::{ProfileData, Rotation};
 use super::side_data::SideData;
 use crate::case::{Doubt, Landmarks, Profiles, SideLandmarks, SideProfiles, usual};
+use crate::profile::Side;
 use crate::search::TrackSide;
 
 /// Lists what is doubtful in a scene, by key, with number and likely cause.
@@ -126,7 +127,8 @@ fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut V
     let bodies = [("rail", own.pair.rail()), ("wheel", own.pair.wheel())];
     for (k, (body, profile)) in bodies.into_iter().enumerate() {
         // The kinks of standards are theirs, those of measured profiles their files', and those of a section its slices'.
-        let section = k == 0 && own.loft.is_some();
+        let sections = own.varying.as_ref().filter(|_| data[k].file.is_some());
+        let section = sections.is_some_and(|varying| (varying.side() == Side::Rail) == (k == 0));
         if !section && data[k].profile.is_none() && own.measured.both()[k].is_none() {
             out.extend(usual::kinks(&own_place(side, body), profile));
         }

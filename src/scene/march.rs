@@ -9,8 +9,8 @@ use super::data::Scene;
 use super::doubts::doubts_of_keys;
 use super::profile_data::ProfileData;
 use super::profiles::{
-    Given, Resolved, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted,
-    wheel_of, wheel_radius,
+    Given, Resolved, Sources, is_chain_file, profile_from_file, rail_of, reject_measured_keys,
+    turned_and_shifted, wheel_of, wheel_radius,
 };
 use super::standing::{position, rails, wheels, within};
 use crate::case::usual;
@@ -78,13 +78,14 @@ impl Sides<'_> {
         let Self { scene, folder, rails, wheels } = *self;
         let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
         let own = own.as_ref();
-        let [rail, wheel] =
+        let [rail, own_wheel] =
             [own.and_then(|side| side.rail.as_ref()), own.and_then(|side| side.wheel.as_ref())];
-        let [rail_key, wheel_key] = [("rail", rail), ("wheel", wheel)]
+        let [rail_key, wheel_key] = [("rail", rail), ("wheel", own_wheel)]
             .map(|(body, own)| if own.is_some() { format!("{name}: {body}") } else { body.to_owned() });
         let (rail, given) = (rail.unwrap_or(&scene.rail), Given::new());
-        let wheel = wheel.unwrap_or(&scene.wheel);
-        let (wheel, radius) = self.wheel(wheel, &wheel_key, lists)?;
+        let data = own_wheel.unwrap_or(&scene.wheel);
+        let Wheel { resolved, radius, varying } = wheel(scene, data, &wheel_key, (folder, &given))?;
+        lists.take_wheel(&wheel_key, (&resolved, radius), varying.as_ref());
         let axle = Wheelset::new(wheels, radius)?;
         let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
         if deviation.roll != 0.0 {
@@ -97,11 +98,9 @@ impl Sides<'_> {
         let Some(list) = list_of(rail, Side::Rail) else {
             let rail = rail_of(rail, &rail_key, (folder, &given))?.profile;
             let track = moved(Track::new(&rail, rails)?)?;
-            return match wheel {
-                Wheel::Round(wheel) => {
-                    SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle)
-                }
-                Wheel::Varying(wheel) => {
+            return match varying {
+                None => SideOnTrack::new(&Pair::new(rail, resolved.profile, radius)?, track, axle),
+                Some(wheel) => {
                     Ok(SideOnTrack::lofted(Arc::new(LoftedPair::turning(&wheel, &rail)?), track, axle))
                 }
             };
@@ -110,47 +109,45 @@ impl Sides<'_> {
             let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
             return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
         };
-        let Wheel::Round(wheel) = wheel else {
-            let found = "a wheel that varies on a rail that varies";
-            let advice = "give the wheel one profile, or the rail a section by `along`";
-            return Err(Error::new(wheel_key, found, "one of the two", advice));
-        };
+        if varying.is_some() {
+            return Err(both_vary(&wheel_key));
+        }
         let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
         lists.take(&loft, &rail_key);
-        let pair = LoftedPair::new(Arc::new(loft), &wheel.profile, radius)?;
+        let pair = LoftedPair::new(Arc::new(loft), &resolved.profile, radius)?;
         Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
-    }
-
-    /// Makes the wheel of one side, with its nominal rolling radius \[mm\].
-    fn wheel(&self, data: &ProfileData, key: &str, lists: &mut Lists) -> Result<(Wheel, f64)> {
-        let made = if let Some(list) = list_of(data, Side::Wheel) {
-            let radius = wheel_radius(self.scene, data, key)?;
-            let wheel = wheel_of_slices(data, &self.folder.join(list), radius);
-            (Wheel::Varying(wheel.map_err(|error| error.within(key))?), radius)
-        } else {
-            let plain = ProfileData { flat: None, radii: None, ..data.clone() };
-            let (wheel, radius) = wheel_of(self.scene, &plain, key, (self.folder, &Given::new()))?;
-            let findings = wheel.measured.iter().flat_map(|record| &record.warnings);
-            lists
-                .warnings
-                .extend(findings.map(|finding| format!("{key}: {}: {}", finding.place, finding.found)));
-            let turning = varying(data, &wheel.profile, radius).map_err(|error| error.within(key))?;
-            (turning.map_or_else(|| Wheel::Round(Box::new(wheel)), Wheel::Varying), radius)
-        };
-        if let Wheel::Varying(wheel) = &made.0 {
-            lists.warnings.extend(wheel.warnings().iter().map(|warning| format!("{key}: {warning}")));
-        }
-        lists
-            .warnings
-            .extend(usual::radius(&format!("{key}: radius"), made.1).map(|doubt| doubt.to_string()));
-        Ok(made)
     }
 }
 
-/// A wheel: of one profile, or one that varies around its axle.
-enum Wheel {
-    Round(Box<Resolved>),
-    Varying(LoftedWheel),
+/// A wheel, which may vary around its axle.
+pub(super) struct Wheel {
+    /// Its profile; of a list of slices the lowest section.
+    pub resolved: Resolved,
+    /// Nominal rolling radius \[mm\].
+    pub radius: f64,
+    /// Its surface where it varies.
+    pub varying: Option<LoftedWheel>,
+}
+
+/// Makes the wheel of one side; `key` is its place in the scene.
+///
+/// # Errors
+/// Anything that is wrong with its profile, its list, its flat or its radii.
+pub(super) fn wheel(scene: &Scene, data: &ProfileData, key: &str, sources: Sources<'_>) -> Result<Wheel> {
+    if let Some(list) = list_of(data, Side::Wheel) {
+        let radius = wheel_radius(scene, data, key)?;
+        let within = |error: Error| error.within(key);
+        let wheel = wheel_of_slices(data, &sources.0.join(list), radius).map_err(within)?;
+        let mut profile = wheel.lowest(scene.pitch()?).map_err(within)?;
+        let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
+        profile.name = format!("{name}, {}", profile.name);
+        let resolved = Resolved { profile, measured: None };
+        return Ok(Wheel { resolved, radius, varying: Some(wheel) });
+    }
+    let plain = ProfileData { flat: None, radii: None, ..data.clone() };
+    let (resolved, radius) = wheel_of(scene, &plain, key, sources)?;
+    let varying = varying(data, &resolved.profile, radius).map_err(|error| error.within(key))?;
+    Ok(Wheel { resolved, radius, varying })
 }
 
 /// Makes the wheel with the flat or the radii of these keys; `None` without either.
@@ -189,6 +186,12 @@ fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<Lofte
         .map_err(|error| error.within(place))
 }
 
+/// Refuses a wheel that varies on a rail that varies.
+pub(super) fn both_vary(wheel_key: &str) -> Error {
+    let advice = "give the wheel one profile, or the rail a section by `along`";
+    Error::new(wheel_key, "a wheel that varies on a rail that varies", "one of the two", advice)
+}
+
 /// What the lists of both sides say.
 struct Lists {
     reach: [f64; 2],
@@ -196,6 +199,14 @@ struct Lists {
 }
 
 impl Lists {
+    fn take_wheel(&mut self, key: &str, (own, radius): (&Resolved, f64), varying: Option<&LoftedWheel>) {
+        let findings = own.measured.iter().flat_map(|record| &record.warnings);
+        self.warnings.extend(findings.map(|finding| format!("{key}: {}: {}", finding.place, finding.found)));
+        let surface = varying.into_iter().flat_map(|wheel| wheel.warnings());
+        self.warnings.extend(surface.map(|warning| format!("{key}: {warning}")));
+        self.warnings.extend(usual::radius(&format!("{key}: radius"), radius).map(|doubt| doubt.to_string()));
+    }
+
     fn take(&mut self, loft: &Loft, place: &str) {
         let [from, to] = loft.reach();
         self.reach = [self.reach[0].max(from), self.reach[1].min(to)];

@@ -44,11 +44,11 @@ measured_options! {
         /// wheel, "monotone" (without overshoot) or "cubic".
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub surface: Option<Joining>,
-        /// A flat on a wheel of one profile, for `wheelrail march`.
+        /// A flat on a wheel of one profile, in a scene for `wheelrail run`, `check` or `march`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub flat: Option<FlatData>,
-        /// Rows [angle around the wheel in rad, deviation from its radius in mm] of a wheel of one profile that is out of round, for
-        /// `wheelrail march`: ascending angles, less than a turn, joined by a periodic cubic spline.
+        /// Rows [angle around the wheel in rad, deviation from its radius in mm] of a wheel of one profile that is out of round, as
+        /// for `flat`: ascending angles, less than a turn, joined by a periodic cubic spline.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub radii: Option<Vec<[f64; 2]>>,
     }

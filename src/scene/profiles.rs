@@ -147,8 +147,8 @@ fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) ->
 
 /// Refuses keys of bodies that vary for one that does not.
 fn reject_varying_keys(data: &ProfileData) -> Result<()> {
-    let lists = "`surface` for a list .slcs without `along`, or one .slcw without `angle`, which `wheelrail march` takes";
-    let wheels = "a wheel that varies around its axle for `wheelrail march` only";
+    let lists = "`surface` for a list .slcs without `along`, or one .slcw without `angle`";
+    let wheels = "a wheel that varies around its axle in a scene for `wheelrail run`, `check` or `march`";
     let keys = [
         ("surface", data.surface.is_some(), lists),
         ("flat", data.flat.is_some(), wheels),

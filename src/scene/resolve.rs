@@ -19,9 +19,10 @@ use crate::case::{
 use crate::conformal::Reference;
 use crate::error::{Error, Result, finite};
 use crate::load::{Elastic, effective_modulus};
+use crate::lofted::LoftedBody;
 use crate::mesh::checked_size;
 use crate::numerics::bodies::Bodies;
-use crate::placement::{on_roller, on_varying_rail};
+use crate::placement::{on_roller, with_varying};
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -70,8 +71,8 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     }
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
-    if profiles.varies() {
-        asked_of_varying_rail(&question, axes.reference)?;
+    if let Some(side) = profiles.varying().next() {
+        asked_of_varying(LoftedBody::name(side), &question, axes.reference)?;
     }
     let of = |own: &SideProfiles| Landmarks::new(&own.pair);
     let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
@@ -79,19 +80,20 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, landmarks, doubts })
 }
 
-/// Refuses what there is not on rails that vary along the track.
-fn asked_of_varying_rail(question: &Question, reference: Reference) -> Result<()> {
+/// Refuses what there is not with a body that varies, of this name.
+fn asked_of_varying(name: &str, question: &Question, reference: Reference) -> Result<()> {
     if question.motion.is_some() {
-        return Err(on_varying_rail());
+        return Err(with_varying(name));
     }
     if reference == Reference::Rail {
-        let expected = "grid.reference = \"plane\": the conformal reference is of extruded rails";
-        let advice = "leave it out";
-        return Err(Error::new("grid: reference", "\"rail\" on a rail that varies", expected, advice));
+        let found = format!("\"rail\" with {name}");
+        let expected =
+            "grid.reference = \"plane\": the conformal reference is of extruded rails and round wheels";
+        return Err(Error::new("grid: reference", found, expected, "leave it out"));
     }
     match question.approach {
         Some(ApproachBy::Given(approach)) if approach > DEEPEST_IN_SLICES => {
-            let expected = format!("0 to {DEEPEST_IN_SLICES} mm on a rail that varies along the track");
+            let expected = format!("0 to {DEEPEST_IN_SLICES} mm with {name}");
             Err(Error::new("patch: approach", format!("{approach:?} mm"), expected, "check the unit"))
         }
         _ => Ok(()),

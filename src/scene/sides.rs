@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::data::Scene;
-use super::march::{list_of, loft};
+use super::march::{Wheel, both_vary, list_of, loft, wheel};
 use super::profile_data::ProfileData;
-use super::profiles::{Resolved, Sources, pair_of, rail_of, wheel_of};
+use super::profiles::{Resolved, Sources, pair_of, rail_of};
 use super::side_data::SideData;
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result};
-use crate::lofted::{Loft, section};
+use crate::lofted::{Loft, LoftedBody, section};
 use crate::numerics::bodies::Bodies;
 use crate::profile::{Profile, Side};
 
@@ -52,14 +52,19 @@ fn of_side(
         Some((section, _)) => Resolved { profile: section.clone(), measured: None },
         None => rail_of(data[0], places[0], sources)?,
     };
-    let (wheel, radius) = wheel_of(scene, data[1], places[1], sources)?;
-    if loft.is_some() && scene.roller.is_some() {
-        let expected = "no roller under a rail that varies along the track";
+    let Wheel { resolved, radius, varying } = wheel(scene, data[1], places[1], sources)?;
+    let varying = match (loft, varying) {
+        (Some(_), Some(_)) => return Err(both_vary(places[1])),
+        (Some((_, loft)), None) => Some(LoftedBody::Rail(loft)),
+        (None, wheel) => wheel.map(|wheel| LoftedBody::Wheel(Arc::new(wheel))),
+    };
+    if let Some(body) = varying.as_ref().filter(|_| scene.roller.is_some()) {
+        let expected = format!("no roller with {}", LoftedBody::name(body.side()));
         return Err(Error::new("roller", "one", expected, "remove it"));
     }
-    let pair = pair_of(scene, rail.profile, wheel.profile, radius)?;
-    let measured = Bodies { rail: rail.measured, wheel: wheel.measured };
-    Ok(SideProfiles { pair, measured, loft: loft.map(|(_, loft)| loft) })
+    let pair = pair_of(scene, rail.profile, resolved.profile, radius)?;
+    let measured = Bodies { rail: rail.measured, wheel: resolved.measured };
+    Ok(SideProfiles { pair, measured, varying })
 }
 
 /// Makes the surface of a rail that is a list of slices without a place of its own, with its section where the wheelset stands; `None` of

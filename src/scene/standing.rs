@@ -8,8 +8,10 @@ use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetDat
 use super::side_data::{DeviationData, SideData};
 use crate::case::{Place, Profiles, SideProfiles, Standing};
 use crate::error::{Error, Result, finite, given};
+use crate::lofted::LoftedBody;
 use crate::measured::Unit;
 use crate::placement::{RailDistance, Track, WheelDistance, Wheelset};
+use crate::profile::Side;
 use crate::search::{
     LoftedPair, Pose, Position, ProfilePair, Roll, SideOnTrack, WheelsetOnTrack, small_angle,
 };
@@ -30,7 +32,7 @@ pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standin
                     return Err(Error::new(side, "a side beside [contact]", expected, "remove it"));
                 }
             }
-            single(contact, &profiles.right, scene.along()?)
+            single(contact, &profiles.right, [scene.along()?, turned(scene)?])
         }
         (None, Some(track), Some(wheelset)) => on_track(scene, track, wheelset, &mut profiles),
         (None, None, None) => {
@@ -56,17 +58,15 @@ fn on_track(
     wheelset: &WheelsetData,
     profiles: &mut Profiles,
 ) -> Result<Standing> {
-    if wheelset.pitch != 0.0 {
-        let found = format!("{} rad", wheelset.pitch);
-        let expected = "a pitch of wheels that vary, for `wheelrail march` only";
-        return Err(Error::new("wheelset: pitch", found, expected, "remove it"));
-    }
     let position = position(wheelset)?;
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
     let deviations = [&scene.left, &scene.right].map(deviation);
     let along = scene.along()?;
-    without_effect("wheelset: along", along, profiles.varies())?;
+    let varying: Vec<Side> = profiles.varying().collect();
+    without_effect(["wheelset: along", ALONG], along, varying.contains(&Side::Rail))?;
+    let pitch = turned(scene)?;
+    without_effect(["wheelset: pitch", PITCH], pitch, varying.contains(&Side::Wheel))?;
     let system = if profiles.left.is_none() && deviations == [None, None] {
         WheelsetOnTrack::symmetrical(side(
             &mut profiles.right,
@@ -98,12 +98,12 @@ fn on_track(
             "give one, or another roll",
         ));
     }
-    let along = along.unwrap_or(0.0);
     Ok(Standing {
         place: Place::Wheelset { system: Arc::new(system), position },
         within,
         roll_by_load,
-        along,
+        along: along.unwrap_or(0.0),
+        pitch: pitch.unwrap_or(0.0),
     })
 }
 
@@ -118,47 +118,53 @@ pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
 
 /// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
 fn side(
-    SideProfiles { pair, loft, .. }: &mut SideProfiles,
+    SideProfiles { pair, varying, .. }: &mut SideProfiles,
     (rails, wheels): (RailDistance, WheelDistance),
     deviation: DeviationData,
     sign: f64,
 ) -> Result<SideOnTrack> {
     let within = |error: Error| error.within("deviation");
     let axle = Wheelset::new(wheels, pair.wheel_radius())?;
-    let nominal = match (&loft, rails) {
-        (None, _) => Track::new(pair.rail(), rails)?,
-        (Some(_), RailDistance::Spacing(spacing)) => Track::between_origins(spacing)?,
-        (Some(_), RailDistance::Gauge { .. }) => {
+    let nominal = match (&varying, rails) {
+        (None | Some(LoftedBody::Wheel(_)), _) => Track::new(pair.rail(), rails)?,
+        (Some(LoftedBody::Rail(_)), RailDistance::Spacing(spacing)) => Track::between_origins(spacing)?,
+        (Some(LoftedBody::Rail(_)), RailDistance::Gauge { .. }) => {
             let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
             return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
         }
     };
     let track = nominal.moved(sign * deviation.lateral, deviation.vertical).map_err(within)?;
     let roll = small_angle("roll", deviation.roll).map_err(within)?;
-    if let Some(loft) = loft {
-        if roll != 0.0 {
-            let expected = "lateral and vertical deviations of rails that vary along the track";
-            return Err(Error::new("deviation: roll", "a roll", expected, "turn the slices by `rotate`"));
-        }
-        let pair = LoftedPair::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius())?;
-        return Ok(SideOnTrack::lofted(Arc::new(pair), track, axle));
+    if let Some(LoftedBody::Rail(_)) = varying.as_ref().filter(|_| roll != 0.0) {
+        let expected = "lateral and vertical deviations of rails that vary along the track";
+        return Err(Error::new("deviation: roll", "a roll", expected, "turn the slices by `rotate`"));
     }
     if roll != 0.0 {
         // Profiles turn counter-clockwise, and the right-hand side's roll is clockwise.
         let rail = pair.rail().clone().rotated(UnitComplex::new(-sign * roll));
         *pair = pair.with_rail(rail)?;
     }
-    SideOnTrack::new(pair, track, axle)
+    match varying {
+        None => SideOnTrack::new(pair, track, axle),
+        Some(body) => Ok(SideOnTrack::lofted(Arc::new(LoftedPair::of_pair(pair, body)?), track, axle)),
+    }
 }
 
-fn single(contact: &ContactData, profiles: &SideProfiles, along: Option<f64>) -> Result<Standing> {
+fn single(
+    contact: &ContactData,
+    profiles: &SideProfiles,
+    [along, pitch]: [Option<f64>; 2],
+) -> Result<Standing> {
     let in_table = |error: Error| error.within("contact");
-    let SideProfiles { pair, loft, .. } = profiles;
-    without_effect("contact: along", along, loft.is_some())?;
+    let SideProfiles { pair, varying, .. } = profiles;
+    let side = varying.as_ref().map(LoftedBody::side);
+    without_effect(["contact: along", ALONG], along, side == Some(Side::Rail))?;
+    without_effect(["contact: pitch", PITCH], pitch, side == Some(Side::Wheel))?;
     let within = within(contact.within).map_err(in_table)?;
     let place = match (contact.rail_x, contact.wheel_x, contact.offset) {
-        (Some(_), ..) if loft.is_some() => {
-            let expected = "`offset` with perhaps `roll` and `yaw`, on a rail that varies along the track";
+        (Some(_), ..) if side.is_some() => {
+            let body = side.map_or("", LoftedBody::name);
+            let expected = format!("`offset` with perhaps `roll` and `yaw`, with {body}");
             return Err(Error::new(
                 "contact: rail_x",
                 "a chosen point",
@@ -175,11 +181,8 @@ fn single(contact: &ContactData, profiles: &SideProfiles, along: Option<f64>) ->
         (None, None, Some(offset)) => {
             let pose = Pose::new(offset, contact.yaw.unwrap_or(0.0), contact.roll.unwrap_or(0.0));
             let pose = pose.map_err(in_table)?;
-            match loft {
-                Some(loft) => {
-                    let pair = LoftedPair::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius())?;
-                    Place::OnSlices { pose, pair: Arc::new(pair) }
-                }
+            match varying {
+                Some(body) => Place::OnSlices { pose, pair: Arc::new(LoftedPair::of_pair(pair, body)?) },
                 None => Place::Wheel { pose, profiles: Arc::new(ProfilePair::new(pair)?) },
             }
         }
@@ -195,16 +198,31 @@ fn single(contact: &ContactData, profiles: &SideProfiles, along: Option<f64>) ->
             return Err(Error::new("contact", found, expected, "keep one of the two forms"));
         }
     };
-    Ok(Standing { place, within, roll_by_load: false, along: along.unwrap_or(0.0) })
+    Ok(Standing {
+        place,
+        within,
+        roll_by_load: false,
+        along: along.unwrap_or(0.0),
+        pitch: pitch.unwrap_or(0.0),
+    })
 }
 
-/// Refuses a place along rails of one profile each.
-fn without_effect(key: &str, along: Option<f64>, varies: bool) -> Result<()> {
-    if along.is_none() || varies {
-        return Ok(());
+/// Gives the pitch of wheels that vary \[rad\]; `None` of 0, which every scene may have.
+fn turned(scene: &Scene) -> Result<Option<f64>> {
+    Ok(Some(scene.pitch()?).filter(|pitch| *pitch != 0.0))
+}
+
+/// What a place along the track and a pitch belong to.
+const ALONG: &str = "a place along a rail that varies: a list .slcs of slices without its own `along`";
+const PITCH: &str =
+    "a pitch of a wheel that varies: with `flat`, `radii`, or a list .slcw of slices without `angle`";
+
+/// Refuses a place along rails of one profile each, and a pitch of such wheels.
+fn without_effect([key, expected]: [&str; 2], given: Option<f64>, varies: bool) -> Result<()> {
+    match given.filter(|_| !varies) {
+        Some(value) => Err(Error::new(key, format!("{value} without effect"), expected, "remove it")),
+        None => Ok(()),
     }
-    let expected = "a place along a rail that varies: a list .slcs of slices without its own `along`";
-    Err(Error::new(key, "a place without effect", expected, "remove it"))
 }
 
 /// Returns the largest gap of a near miss \[mm\], 0 if none is given.

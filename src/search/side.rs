@@ -7,7 +7,7 @@ use super::locus::Attitude;
 use super::lofted::{LoftedPair, LoftedSearch};
 use super::over_rail::Work;
 use super::touch::{ContactSearch, ProfilePair, Selection, Touch};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::placement::{Pair, Track, Wheelset};
 
 /// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
@@ -96,11 +96,11 @@ impl SideSearch<'_> {
         }
     }
 
-    /// Tells whether a search ended without an answer since this was asked last.
-    pub fn gave_up(&mut self) -> bool {
+    /// Says that a search ended without an answer since this was asked last.
+    pub fn gave_up(&mut self) -> Option<Error> {
         match self {
-            Self::Swept(_) => false,
-            Self::Lofted(search) => std::mem::take(&mut search.gave_up),
+            Self::Swept(_) => None,
+            Self::Lofted(search) => std::mem::take(&mut search.gave_up).then(|| search.pair().too_close()),
         }
     }
 

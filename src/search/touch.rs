@@ -11,7 +11,7 @@ use super::locus::Attitude;
 use super::over_rail::{RailSearch, SearchPair, Work};
 use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, Result, finite};
-use crate::lofted::{FramedLoft, Loft, section};
+use crate::lofted::{FramedLoft, LoftedBody, section};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 
@@ -73,6 +73,10 @@ pub struct Contact {
     /// the angle about its axle from the crown to the contact, which lies at (R + z) sin ν ahead of the crown, with R the roller's
     /// radius and z = `rail_z`.
     pub turn: f64,
+    /// Angle \[rad\] around a wheel that varies at which the contact lies, as its slices or keys count; 0 on a round wheel.
+    pub around: f64,
+    /// Angle \[rad\] by which the common normal leans forward out of the meridian plane of a wheel that varies; 0 on a round wheel.
+    pub lean: f64,
     /// Contact angle θ_R \[rad\]: tangent angle of the common tangent in the rail's axes, + counter-clockwise
     /// from x to z; on a roller, in its meridian plane through the contact. A flange contact has 1.2.
     pub contact_angle: f64,
@@ -316,29 +320,45 @@ impl Contact {
         Ok(placed.turned(self.turn))
     }
 
-    /// Places a wheel in contact here with a rail that varies along the track. `pair` is any pair of this wheel; `from` is the
-    /// coordinate \[mm\] in the list of slices that [`Self::y`] counts from.
+    /// Places a wheel in contact here with its rail, one of which varies: that body. `pair` is any pair of the other one; `from` is the
+    /// coordinate \[mm\] in the list of a rail's slices that [`Self::y`] counts from.
     ///
-    /// The contact frame's ξ lies in the section across the track, and its ζ leans ahead by [`Self::turn`]. The rail's profile is the
-    /// section through C.
+    /// The contact frame's ξ lies in the section across the track, and its ζ leans ahead by [`Self::turn`]. The profile of the body that
+    /// varies is the section through C.
     ///
     /// # Errors
-    /// A contact of another rail, which has no surface here.
-    pub fn placed_on(&self, pair: &Pair, loft: &Arc<Loft>, from: f64) -> Result<Placement> {
+    /// A contact of another body, which has no surface here.
+    pub fn placed_on(&self, pair: &Pair, body: &LoftedBody, from: f64) -> Result<Placement> {
         let nowhere = || {
-            let expected = "a place of contact on this rail";
-            Error::new("contact", "no surface of the rail there", expected, "take the rail that was searched")
+            let expected = "a place of contact on this body";
+            Error::new("contact", "no surface there", expected, "take the bodies that were searched")
         };
-        let origin = [self.rail_x, self.y + from, self.rail_z];
-        let framed = FramedLoft::new(Arc::clone(loft), origin, self.contact_angle, self.turn)?;
-        let foot = framed.foot(0.0, 0.0).ok_or_else(nowhere)?;
+        let framed = match body {
+            LoftedBody::Rail(loft) => {
+                let origin = [self.rail_x, self.y + from, self.rail_z];
+                FramedLoft::of_rail(Arc::clone(loft), origin, self.contact_angle, self.turn)?
+            }
+            LoftedBody::Wheel(wheel) => {
+                let place = ([self.wheel_x, self.wheel_z], self.around);
+                FramedLoft::of_wheel(wheel, place, [self.wheel_angle, self.lean, self.skew])?
+            }
+        };
+        let (loft, foot) = (framed.loft(), framed.foot(0.0, 0.0).ok_or_else(nowhere)?);
         let [first, last] = loft.strips[foot.strip].reach();
-        let section = section(loft, foot.strip, origin[1].clamp(first, last))?;
-        let pair = pair.with_rail(section)?;
+        let section = section(loft, foot.strip, framed.along().clamp(first, last))?;
+        let pair = match framed.side() {
+            Side::Rail => pair.with_rail(section)?,
+            Side::Wheel => pair.with_wheel(section.upside_down())?,
+        };
         // At the end of a part the section may end a rounding before.
-        let [low, high] = pair.sections()[0].reach().ok_or_else(nowhere)?;
-        let here = Self { rail_x: self.rail_x.clamp(low, high), ..*self };
-        Ok(here.placed(&pair)?.over_loft(Arc::new(framed)))
+        let [rail, wheel] = pair.sections().map(Section::reach);
+        let within = |x: f64, [low, high]: [f64; 2]| x.clamp(low, high);
+        let mut here = *self;
+        match framed.side() {
+            Side::Rail => here.rail_x = within(self.rail_x, rail.ok_or_else(nowhere)?),
+            Side::Wheel => here.wheel_x = within(self.wheel_x, wheel.ok_or_else(nowhere)?),
+        }
+        Ok(here.placed(&pair)?.with_loft(Arc::new(framed)))
     }
 }
 
@@ -354,6 +374,8 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
         // Without yaw y is 0, not −0.
         y: attitude.sin_yaw * (c.wheel.x - rolling_radius * c.wheel.sin / c.wheel.cos) + 0.0,
         turn: 0.0,
+        around: 0.0,
+        lean: 0.0,
         contact_angle: c.rail.angle(),
         wheel_angle: c.wheel.angle(),
         skew: attitude.sin_yaw.atan2(attitude.cos_yaw * unrolled_cos) + 0.0,

@@ -13,7 +13,7 @@ use super::over_rail::Work;
 use super::position::{Position, Roll};
 use super::side::{SideOnTrack, SidePair, SideSearch};
 use super::touch::{Selection, Touch, small_angle};
-use crate::error::{Error, Result, finite};
+use crate::error::{Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
 /// A wheelset on its track: a profile pair on both sides, each in its own axes.
@@ -270,10 +270,8 @@ impl WheelsetSearch<'_> {
                 level => level,
             },
         };
-        if self.sides.each_mut().map(SideSearch::gave_up).contains(&true) {
-            let expected = "slices over which a wheel touches at places, not all over";
-            let advice = "look at the slices nearby, or lower `within`";
-            return Err(Error::new("rail", "a surface too close to the wheel's", expected, advice));
+        if let Some(error) = self.sides.each_mut().map(SideSearch::gave_up).into_iter().flatten().next() {
+            return Err(error);
         }
         let Some(Lowered { kept, heights, attitudes, meetings }) = level else { return Ok(None) };
         let Kept { roll, z, .. } = kept;

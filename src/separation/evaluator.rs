@@ -8,6 +8,7 @@ use super::relief::Relief;
 use crate::lofted::Feet;
 use crate::numerics::lanes::MANY;
 use crate::placement::Placement;
+use crate::profile::Section;
 
 /// Both outward unit normals (ξ, η, ζ) over one point of the tangent plane; `None` where a body has no surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,19 +41,86 @@ pub struct Normals {
 #[derive(Debug)]
 pub struct Evaluator<'a> {
     placement: &'a Placement,
-    /// The wheel over the lower profile.
-    upper: Relief<'a>,
+    upper: Upper<'a>,
     /// The lower profile over a roller, upside down; `None` for a rail.
     lower: Option<Relief<'a>>,
     /// Feet on a rail that varies along the track, over whose tangent plane the wheel's height is known.
     feet: Option<Feet<'a>>,
 }
 
+/// The wheel, by its height over the lower profile, or over the tangent plane of a rail that varies.
+#[derive(Debug)]
+enum Upper<'a> {
+    /// A wheel of revolution.
+    Round(Box<Relief<'a>>),
+    /// A wheel that varies, over the profile of its rail.
+    Varying(Feet<'a>, &'a Section),
+}
+
+impl<'a> Upper<'a> {
+    fn new(placement: &'a Placement) -> Self {
+        match placement.lofted_wheel() {
+            Some(wheel) => Self::Varying(Feet::new(wheel), &placement.rail().section),
+            None => Self::Round(Box::new(Relief::new(placement))),
+        }
+    }
+
+    /// Height \[mm\], and the sum of the magnitudes of its terms; NaN where there is none.
+    fn height_and_size(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        match self {
+            Self::Round(relief) => relief.height_and_size(xi, eta),
+            Self::Varying(feet, rail) => {
+                let (above, below) = (feet.height(xi, eta), rail.height(xi));
+                [above - below, above.abs() + below.abs()]
+            }
+        }
+    }
+
+    fn height(&mut self, xi: f64, eta: f64) -> f64 {
+        match self {
+            Self::Round(relief) => relief.height(xi, eta),
+            Self::Varying(feet, rail) => feet.height(xi, eta) - rail.height(xi),
+        }
+    }
+
+    /// Height, and the wheel's outward unit normal.
+    fn height_and_normal(&mut self, xi: f64, eta: f64) -> Option<(f64, Unit<Vector3<f64>>)> {
+        match self {
+            Self::Round(relief) => {
+                let point = relief.point(xi, eta)?;
+                Some((relief.height_at(xi, &point), relief.normal(&point)))
+            }
+            Self::Varying(feet, rail) => {
+                let foot = feet.at(xi, eta)?;
+                Some((foot.zeta - rail.height(xi), -foot.normal()))
+            }
+        }
+    }
+
+    fn column(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
+        match self {
+            Self::Round(relief) => relief.column(xi, eta, out),
+            Self::Varying(feet, _) => {
+                feet.forget();
+                out.iter_mut().zip(eta).for_each(|(s, &eta)| *s = self.height(xi, eta));
+            }
+        }
+    }
+
+    fn column_in_lanes(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
+        let Self::Round(relief) = self else { return self.column(xi, eta, out) };
+        let demand = Demand::for_tolerance(FULL_PRECISION);
+        for (eta, out) in eta.chunks(MANY).zip(out.chunks_mut(MANY)) {
+            skewed::fill(relief, (pulp::Arch::new(), demand), xi, eta, out);
+        }
+    }
+}
+
 impl<'a> Evaluator<'a> {
     /// Makes an evaluator for a placed pair.
     pub fn new(placement: &'a Placement) -> Self {
-        let (lower, feet) = (placement.under().map(Relief::new), placement.lofted().map(Feet::new));
-        Self { placement, upper: Relief::new(placement), lower, feet }
+        let (lower, feet) = (placement.under().map(Relief::new), placement.lofted_rail().map(Feet::new));
+        Self { placement, upper: Upper::new(placement), lower, feet }
     }
 
     /// Computes s(ξ, η) \[mm\], which is negative where the bodies overlap, and NaN where a body has no surface.
@@ -61,7 +129,7 @@ impl<'a> Evaluator<'a> {
     /// of the terms of s: the midplane gap, the rise of the wheel across, the fall of a roller and, under yaw, the climb of the
     /// wheel along ξ′ − ξ. If these terms have one sign, as at any contact that is open all around, this is a relative error of s
     /// below 1e-13. Elsewhere the absolute error is below 2e-12 mm × max(1, R_max/300 mm). Both are checked against 28- and
-    /// 60-digit values. Over a rail that varies along the track it is below 1e-11 mm.
+    /// 60-digit values. Over a rail that varies along the track, and under a wheel that varies around its axle, it is below 1e-11 mm.
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         let above = self.upper.height(xi, eta);
         if let Some(feet) = &mut self.feet {
@@ -73,8 +141,8 @@ impl<'a> Evaluator<'a> {
     /// Computes s \[mm\] and its gradient [∂s/∂ξ, ∂s/∂η] at (ξ, η); one call costs less than two. NaN off either body.
     pub fn separation_and_gradient(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {
         let nowhere = (f64::NAN, [f64::NAN; 2]);
-        let Some(point) = self.upper.point(xi, eta) else { return nowhere };
-        let (s, [along, across]) = (self.upper.height_at(xi, &point), slopes(self.upper.normal(&point)));
+        let Some((s, normal)) = self.upper.height_and_normal(xi, eta) else { return nowhere };
+        let [along, across] = slopes(normal);
         if let Some(feet) = &mut self.feet {
             let Some(foot) = feet.at(xi, eta) else { return nowhere };
             return (s - foot.zeta, [along - foot.slopes[0], across - foot.slopes[1]]);
@@ -87,7 +155,7 @@ impl<'a> Evaluator<'a> {
 
     /// Computes [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η); NaN off the wheel.
     pub fn wheel_slopes(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        self.upper.point(xi, eta).map_or([f64::NAN; 2], |point| slopes(self.upper.normal(&point)))
+        self.upper.height_and_normal(xi, eta).map_or([f64::NAN; 2], |(_, normal)| slopes(normal))
     }
 
     /// Returns whether the lower body is a roller.
@@ -117,8 +185,7 @@ impl<'a> Evaluator<'a> {
                 Unit::new_unchecked(Vector3::new(-tangent.sin, 0.0, tangent.cos))
             }),
         };
-        let wheel = self.upper.point(xi, eta).map(|point| self.upper.normal(&point));
-        Normals { rail, wheel }
+        Normals { rail, wheel: self.upper.height_and_normal(xi, eta).map(|(_, normal)| normal) }
     }
 
     /// Computes s, and the sum of the magnitudes of its terms \[mm\]. Both are NaN off either body.
@@ -151,16 +218,14 @@ impl<'a> Evaluator<'a> {
 
     /// Does what [`Self::column`] does, the wheel 16 points at once. Each point is as accurate.
     pub(crate) fn column_in_lanes(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
-        let demand = Demand::for_tolerance(FULL_PRECISION);
-        for (eta, out) in eta.chunks(MANY).zip(out.chunks_mut(MANY)) {
-            skewed::fill(&mut self.upper, (pulp::Arch::new(), demand), xi, eta, out);
-        }
+        self.upper.column_in_lanes(xi, eta, out);
         self.add_lower(xi, eta, out);
     }
 
     /// Adds how far the lower body lies below what the wheel's height is over.
     fn add_lower(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         if let Some(feet) = &mut self.feet {
+            feet.forget();
             out.iter_mut().zip(eta).for_each(|(s, &eta)| *s -= feet.height(xi, eta));
         }
         if let Some(lower) = &mut self.lower {

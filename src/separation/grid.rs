@@ -13,7 +13,7 @@ use super::mask::{Masked, covered};
 use super::methods::parabolic::Parabolic;
 use super::methods::pointwise::Pointwise;
 use super::methods::quadratic::Quadratic;
-use super::methods::report_newton::ReportNewton;
+use super::methods::report_newton::{self, ReportNewton};
 use super::methods::spectral::Spectral;
 use super::relief::Relief;
 use super::values::Residence;
@@ -70,6 +70,18 @@ impl Method {
             Self::ReportNewton => "report-newton",
         }
     }
+
+    /// Names the feature of a placed pair for which the method has no formula; its values are then NaN. Returns `None` if it has formulas
+    /// for everything.
+    pub fn missing(self, placement: &Placement) -> Option<&'static str> {
+        match self {
+            Self::ConstantRadius | Self::Parabolic | Self::Spectral => {
+                placement.lofted_wheel().and_then(|_| placement.varying())
+            }
+            Self::ReportNewton => report_newton::missing(placement),
+            Self::Quadratic | Self::Pointwise => None,
+        }
+    }
 }
 
 /// A method with the accuracy to which it runs.
@@ -92,6 +104,10 @@ impl Choice {
     /// is [`super::values::Values`].
     pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
         if axis.eta.is_empty() {
+            return 0.0;
+        }
+        if self.method.missing(placement).is_some() {
+            out.fill(f64::NAN);
             return 0.0;
         }
         let bare: &(dyn Fn() -> Box<dyn Kernel> + Sync) = match self.method {
@@ -160,7 +176,7 @@ fn summed<'a>(
     make: impl Fn(usize, Relief<'a>) -> Box<dyn Kernel + 'a>,
 ) -> Box<dyn Kernel + 'a> {
     let wheel = make(0, Relief::new(placement));
-    if let Some(rail) = placement.lofted() {
+    if let Some(rail) = placement.lofted_rail() {
         return Box::new(OverLoft { wheel, rail, axis });
     }
     match placement.under() {

@@ -14,6 +14,7 @@ use super::methods::quadratic::quadratic_form;
 use super::relief::Relief;
 use super::rounding::rounding;
 use super::samples::{Samples, difference, places, thinned};
+use crate::lofted::FramedLoft;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
@@ -103,7 +104,9 @@ pub fn plan(
 ) -> Plan {
     let grid = Planned { placement, xi, axis, tolerance };
     match forced {
-        Some(Method::Spectral) => grid.spectral(&Probe::new(&grid), "asked for by the scene".into()),
+        Some(Method::Spectral) if placement.lofted_wheel().is_none() => {
+            grid.spectral(&Probe::new(&grid), "asked for by the scene".into())
+        }
         Some(method) => grid.sampled(method, &Probe::new(&grid), "asked for by the scene".into()),
         None => grid.cheapest(),
     }
@@ -139,6 +142,13 @@ impl Planned<'_> {
         } else {
             format!("{quadratic} is off by {found:.1e} mm or more")
         };
+        if let Some(varying) = self.placement.varying().filter(|_| self.placement.lofted_wheel().is_some()) {
+            return self.sampled(
+                Method::Pointwise,
+                &probe,
+                format!("columns have no form for {varying}; {why}"),
+            );
+        }
         self.spectral(&probe, format!("cheapest within {tolerance:e} mm; {why}"))
     }
 
@@ -266,6 +276,7 @@ impl Probe {
             }
         }
         let of_reliefs = Relief::all(placement).map(|relief| rounding(&relief, xi, axis, most));
-        Self { quadratic, rounding: of_reliefs.sum() }
+        let of_feet = placement.lofted().map_or(0.0, |_| FramedLoft::ROUNDING);
+        Self { quadratic, rounding: of_reliefs.sum::<f64>() + of_feet }
     }
 }

@@ -43,16 +43,17 @@ pub struct ReliefPoint {
 
 impl<'a> Relief<'a> {
     /// Makes the reliefs of a placed pair: that of the wheel over the lower profile, and that of the profile over a roller. The
-    /// separation is their sum.
+    /// separation is their sum. A wheel that varies around its axle has none.
     pub fn all(placement: &'a Placement) -> impl Iterator<Item = Self> {
-        std::iter::once(placement).chain(placement.under()).map(Self::new)
+        let round = Some(placement).filter(|placement| placement.lofted_wheel().is_none());
+        round.into_iter().chain(placement.under()).map(Self::new)
     }
 
     /// Makes the relief of the wheel of a placed pair over the profile of its rail.
     pub fn new(placement: &'a Placement) -> Self {
         Self {
             // Of a rail that varies, the height over its tangent plane is known apart.
-            below: placement.lofted().map_or(&placement.rail().section, FramedLoft::plane),
+            below: placement.lofted_rail().map_or(&placement.rail().section, FramedLoft::plane),
             wheel: Surface::new(placement),
             spans: Vec::with_capacity(4),
             skew: placement.skew_rotation(),

@@ -22,10 +22,10 @@ use super::campaign::scenes;
 
 /// Distance of the profile origins \[mm\].
 const SPACING: f64 = 1500.0;
-const RADIUS: f64 = 460.0;
+pub(super) const RADIUS: f64 = 460.0;
 
 /// A march of the same wheel on the same rail on both sides.
-fn turning(wheel: &LoftedWheel, rail: &Profile, position: Position, within: f64) -> Result<March> {
+pub(super) fn turning(wheel: &LoftedWheel, rail: &Profile, position: Position, within: f64) -> Result<March> {
     let pair = Arc::new(LoftedPair::turning(wheel, rail)?);
     let axle = Wheelset::new(WheelDistance::Spacing(SPACING), RADIUS)?;
     let side = SideOnTrack::lofted(pair, Track::new(rail, RailDistance::Spacing(SPACING))?, axle);
@@ -34,7 +34,7 @@ fn turning(wheel: &LoftedWheel, rail: &Profile, position: Position, within: f64)
     Ok(March { system: WheelsetOnTrack::symmetrical(side), position, selection, reach, pitch: 0.0 })
 }
 
-fn position(lateral: f64, yaw: f64, roll: f64) -> Position {
+pub(super) fn position(lateral: f64, yaw: f64, roll: f64) -> Position {
     Position { lateral, yaw, roll: Roll::Fixed(roll) }
 }
 
@@ -43,12 +43,12 @@ fn line(half: f64) -> Result<Profile> {
     Profile::new("line", "", vec![Segment::arc(Segments::line([-half, 0.0], [half, 0.0])?)])
 }
 
-fn crown() -> Result<Profile> {
+pub(super) fn crown() -> Result<Profile> {
     let arc = Segments::about([0.0, -300.0], 300.0, Half::Upper, [-30.0, 30.0])?;
     Profile::new("crown", "", vec![Segment::arc(arc)])
 }
 
-fn of_right(stop: &Stop) -> Result<wheelrail::search::SweepRow> {
+pub(super) fn of_right(stop: &Stop) -> Result<wheelrail::search::SweepRow> {
     let row = stop.rows.iter().find(|row| row.side == TrackSide::Right);
     Ok(*row.unwrap_or_else(|| panic!("no contact at {}", stop.along)))
 }
@@ -359,7 +359,7 @@ fn wheels_that_make_no_surface_are_refused_by_the_key() -> Result<()> {
 }
 
 /// The cases of a group of the reference file.
-fn cases(group: &str) -> Vec<Value> {
+pub(super) fn cases(group: &str) -> Vec<Value> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference_along/along_track.json");
     let file: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     file["cases"].as_array().unwrap().iter().filter(|case| case["group"] == group).cloned().collect()

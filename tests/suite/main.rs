@@ -48,5 +48,6 @@ mod steps;
 mod strips;
 mod tables;
 mod triangles;
+mod turned_wheels;
 mod two_sides;
 mod yawed_patches;

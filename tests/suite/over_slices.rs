@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use wheelrail::case::{Run, SILENT};
 use wheelrail::error::Result;
-use wheelrail::lofted::{Joining, Loft};
+use wheelrail::lofted::{Joining, Loft, LoftedBody};
 use wheelrail::mesh::{StripCounts, StripMesh};
 use wheelrail::scene;
 use wheelrail::search::TrackSide;
@@ -39,7 +39,11 @@ fn on_crown(height: impl Fn(f64) -> f64, at: &[f64], yaw: f64, along: f64) -> Re
     let march = march_over(&rail, cylinder(), position(0.0, yaw, 0.0), 0.0)?;
     let loft = Arc::new(Loft::new(&rail, Joining::Monotone)?);
     let pair = Pair::new(crown(0.0), cylinder(), RADIUS)?;
-    right(&march, along).placed_on(&pair, &loft, march.system.along(true, &march.position, along))
+    right(&march, along).placed_on(
+        &pair,
+        &LoftedBody::Rail(loft),
+        march.system.along(true, &march.position, along),
+    )
 }
 
 /// ζ of a crown that rises at a rate, at (ξ, η) of a frame: by bisection along the line, in the axes of the slices.
@@ -98,8 +102,8 @@ fn separation_and_normals_over_a_nose_that_rises_are_those_of_an_inclined_rail()
 #[test]
 fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()> {
     let pair = Pair::new(crown(0.0), cylinder(), RADIUS)?;
-    let loft =
-        Arc::new(Loft::new(&slices(&[-300.0, -40.0, 5.0, 45.0, 300.0], |_| crown(0.0)), Joining::Monotone)?);
+    let loft = Loft::new(&slices(&[-300.0, -40.0, 5.0, 45.0, 300.0], |_| crown(0.0)), Joining::Monotone)?;
+    let body = LoftedBody::Rail(Arc::new(loft));
     let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
     let mut random = Random::new(344);
@@ -112,7 +116,7 @@ fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()
         let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT });
         let contact = touch.expect("a wheel on a rail").contacts[0];
         let (swept, lofted) =
-            (contact.placed(&pair)?, contact.placed_on(&pair, &loft, random.between(-9.0, 9.0))?);
+            (contact.placed(&pair)?, contact.placed_on(&pair, &body, random.between(-9.0, 9.0))?);
         let (mut own, mut other) = (Evaluator::new(&lofted), Evaluator::new(&swept));
         for _ in 0..100 {
             let at = [random.between(-15.0, 15.0), random.between(-15.0, 15.0)];
@@ -183,7 +187,7 @@ const FLOODED: [f64; 2] = [20.0, 70.0];
 const ON_BOUNDARY: f64 = 1e-7;
 
 /// Whether every point of a flood fill is inside the patch where s < δ, and neighbours inside are of one component.
-fn floods(placement: &Placement, patch: &Patch) -> std::result::Result<usize, String> {
+pub(super) fn floods(placement: &Placement, patch: &Patch) -> std::result::Result<usize, String> {
     let mut evaluator = Evaluator::new(placement);
     let [columns, rows] = [0, 1].map(|k| (FLOODED[k] / FLOOD[k]) as i32);
     let mut inside = 0;
@@ -322,8 +326,8 @@ fn a_mere_touch_has_no_patch() -> Result<()> {
 #[test]
 fn what_rails_that_vary_do_not_have_is_refused_by_name() {
     for (along, more, message) in [
-        ("160.0", "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" on a rail that varies"),
-        ("160.0", "[motion]\nspeed = 10.0", "motion: found a motion over a rail that varies"),
+        ("160.0", "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" with a rail that varies"),
+        ("160.0", "[motion]\nspeed = 10.0", "motion: found a motion with a rail that varies"),
         ("160.0", "[patch]\napproach = 0.05\nframe = \"weighted\"", "patch: frame: found"),
         ("160.0", "[roller]\nradius = 350.0", "roller: found one"),
         ("999.0", "", "wheelset: along: found 999.0 mm; expected a place from -150 to 350 mm"),
@@ -331,7 +335,7 @@ fn what_rails_that_vary_do_not_have_is_refused_by_name() {
         (
             "160.0",
             "[patch]\napproach = 20.0",
-            "patch: approach: found 20.0 mm; expected 0 to 10 mm on a rail that varies",
+            "patch: approach: found 20.0 mm; expected 0 to 10 mm with a rail that varies",
         ),
         (
             "160.0",

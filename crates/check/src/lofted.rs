@@ -1,7 +1,8 @@
-//! The check of a rail that varies along the track: its surface and the wheel's as triangle meshes, measured by rays along ζ.
+//! The check of a pair one body of which varies, a rail along the track or a wheel around its axle: both surfaces as triangle meshes,
+//! measured by rays along ζ.
 //!
-//! The rail's meshes are made of points of its strips, in a frame that is set up here from the angles of the contact. A ray meets a
-//! coarse mesh first, and then meshes of nine cells around that place, each smaller than the one before.
+//! The meshes of the body that varies are made of points of its strips. The frame of a rail is set up here from the angles of the contact;
+//! a wheel is wrapped around its axle here, and has the program's frame, whose normal is checked. A ray meets a coarse mesh first, and then meshes of nine cells around that place, each smaller than the one before.
 
 use std::fmt;
 use std::time::Instant;
@@ -10,9 +11,10 @@ use serde::Serialize;
 use wheelrail::error::{Error, Result};
 use wheelrail::lofted::{FramedLoft, Strip};
 use wheelrail::placement::Placement;
+use wheelrail::profile::Side;
 
 use super::body::{AlongZeta, FLANGEWAY, STEEPEST, Solid};
-use super::meshes::{Mesh, RayOrigin, Vector};
+use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{cells, parameters};
 use super::ray::extrapolated;
 use super::report::Differences;
@@ -22,7 +24,7 @@ use super::sampler::SampledSurface;
 /// Numbers of lines of points in ξ and η, with the edges of the window; a prime to the cells, so that few lie on their sides.
 const GRID: [usize; 2] = [17, 13];
 
-/// Cells of the coarse mesh: one across, and this many mm along the track.
+/// Cells of the coarse mesh: one across, and this many mm along the track or around the wheel.
 const ALONG: f64 = 1.0;
 
 /// Margin of the coarse mesh around the window \[mm\].
@@ -46,7 +48,7 @@ const SAFETY: f64 = 4.0;
 /// Rounding of a height, per millimetre of the largest coordinate.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// What rays on meshes found of a contact with a rail that varies.
+/// What rays on meshes found of a contact with a body that varies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoftedReport {
     /// Whether all values agree.
@@ -61,7 +63,7 @@ pub struct LoftedReport {
     pub surface_disputed: usize,
     /// Differences |s − s by rays| \[mm\].
     pub separation: Differences,
-    /// Differences of the rail's unit normals.
+    /// Differences of the unit normals of the body that varies.
     pub normals: Differences,
     /// Time of the check \[s\].
     pub seconds: f64,
@@ -94,7 +96,7 @@ impl fmt::Display for LoftedReport {
     }
 }
 
-/// Checks the separation and the rail's normals of a contact with a rail that varies along the track.
+/// Checks the separation of a contact with a body that varies, and the normals of that body.
 ///
 /// Cost: about a second.
 ///
@@ -109,30 +111,38 @@ pub(super) fn check_lofted(
     let Request { window, .. } = request;
     let reach = window.xi.into_iter().chain(window.eta).map(f64::abs).fold(0.0, f64::max);
     let bad = || Error::new("check", "a window without finite points", "a finite window", "check the grid");
-    let rail = MeshedRail::new(lofted, placement, request)?;
-    let wheel = Some(SampledSurface::wheel(placement)).filter(|_| reach.is_finite());
-    let wheel = wheel.and_then(|surface| Solid::new(surface, 2.0 * reach)).ok_or_else(bad)?;
+    let own = MeshedLoft::new(lofted, placement, request)?;
+    let other = match lofted.side() {
+        Side::Rail => SampledSurface::wheel(placement),
+        Side::Wheel => SampledSurface::rail(placement),
+    };
+    let other = Some(other).filter(|_| reach.is_finite());
+    let other = other.and_then(|surface| Solid::new(surface, 2.0 * reach)).ok_or_else(bad)?;
     let (mut separation, mut normals) = (Vec::new(), Vec::new());
     let [mut no_surface, mut steep_or_end, mut surface_disputed] = [0; 3];
     let place = |[from, to]: [f64; 2], k: usize, n: usize| from + (to - from) * k as f64 / (n - 1) as f64;
     for k in 0..GRID[0] * GRID[1] {
         let at = [place(window.xi, k / GRID[1], GRID[0]), place(window.eta, k % GRID[1], GRID[1])];
         let found = answer(at[0], at[1]);
-        let (below, above) = (rail.met(at, found, &wheel), wheel.along_zeta(at[0], at[1]));
-        match (below, above) {
-            (Below::Steep, _) | (_, AlongZeta::Steep | AlongZeta::Unresolved) => steep_or_end += 1,
-            (Below::Nothing, _) | (_, AlongZeta::Nothing) if found.separation.is_nan() => no_surface += 1,
-            (Below::Nothing, _) | (_, AlongZeta::Nothing) => surface_disputed += 1,
+        let met = (own.met(at, found, &other), other.along_zeta(at[0], at[1]));
+        match met {
+            (Met::Steep, _) | (_, AlongZeta::Steep | AlongZeta::Unresolved) => steep_or_end += 1,
+            (Met::Nothing, _) | (_, AlongZeta::Nothing) if found.separation.is_nan() => no_surface += 1,
+            (Met::Nothing, _) | (_, AlongZeta::Nothing) => surface_disputed += 1,
             _ if found.separation.is_nan() => surface_disputed += 1,
-            (Below::At { zeta, upright, normal }, AlongZeta::Heights(heights)) => {
+            (Met::At { zeta, upright, normal }, AlongZeta::Heights(heights)) => {
                 let error = heights.iter().map(|h| h.error).fold(0.0, f64::max);
-                let allowed = SAFETY * error + ROUNDINGS * rail.size / upright.min(heights[0].normal.z);
-                separation.push(((found.separation - (heights[0].zeta - zeta)).abs(), allowed, at));
-                let own =
-                    found.normals.rail.map_or(Vector::NAN, |n| Vector::from_array(n.into_inner().into()));
-                let rounding = ROUNDINGS * rail.size / NORMAL_CELL;
+                let allowed = SAFETY * error + ROUNDINGS * own.size / upright.min(heights[0].normal.z);
+                let apart = own.apart(zeta, heights[0].zeta);
+                separation.push(((found.separation - apart).abs(), allowed, at));
+                let outward = match lofted.side() {
+                    Side::Rail => found.normals.rail,
+                    Side::Wheel => found.normals.wheel.map(|down| -down),
+                };
+                let upward = outward.map_or(Vector::NAN, |n| Vector::from_array(n.into_inner().into()));
+                let rounding = ROUNDINGS * own.size / NORMAL_CELL;
                 if let Some((normal, normal_error)) = normal {
-                    normals.push((own.distance(normal), SAFETY * normal_error + rounding, at));
+                    normals.push((upward.distance(normal), SAFETY * normal_error + rounding, at));
                 }
             }
         }
@@ -151,8 +161,8 @@ pub(super) fn check_lofted(
     })
 }
 
-/// What a ray finds of the rail.
-enum Below {
+/// What a ray finds of the body that varies.
+enum Met {
     At {
         zeta: f64,
         /// ζ component of the last mesh's normal.
@@ -164,11 +174,15 @@ enum Below {
     Steep,
 }
 
-/// The rail's strips as coarse meshes around the window.
-struct MeshedRail<'a> {
+/// The strips of the body that varies as coarse meshes around the window.
+struct MeshedLoft<'a> {
     lofted: &'a FramedLoft,
-    /// ξ, η, ζ in the axes of the slices.
+    /// ξ, η, ζ in the body's own axes, upright.
     axes: [Vector; 3],
+    /// C in these axes \[mm\].
+    origin: Vector,
+    /// R of a wheel \[mm\].
+    radius: f64,
     meshes: Vec<MeshedStrip>,
     /// Largest coordinate \[mm\].
     size: f64,
@@ -181,19 +195,30 @@ struct MeshedStrip {
     y: Vec<f64>,
 }
 
-impl<'a> MeshedRail<'a> {
+impl<'a> MeshedLoft<'a> {
     fn new(lofted: &'a FramedLoft, placement: &Placement, request: &Request) -> Result<Self> {
-        let ((sin, cos), (rise, run)) =
-            (placement.rail().contact_angle().sin_cos(), placement.turn().sin_cos());
-        let (xi, zeta) = (Vector::new(cos, 0.0, sin), Vector::new(-sin * run, rise, cos * run));
         let [x, y, z] = lofted.origin();
-        let size = placement.rail().profile().extent() + x.abs() + y.abs() + z.abs();
-        let mut rail = Self { lofted, axes: [xi, zeta.cross(xi), zeta], meshes: Vec::new(), size };
-        let window = request.window;
+        let (axes, origin, extent, radius) = match lofted.side() {
+            Side::Rail => {
+                let ((sin, cos), (rise, run)) =
+                    (placement.rail().contact_angle().sin_cos(), placement.turn().sin_cos());
+                let (xi, zeta) = (Vector::new(cos, 0.0, sin), Vector::new(-sin * run, rise, cos * run));
+                let extent = placement.rail().profile().extent();
+                ([xi, zeta.cross(xi), zeta], Vector::new(x, y, z), extent, f64::INFINITY)
+            }
+            Side::Wheel => {
+                let axes = lofted.axes().map(|[x, y, z]| Vector::new(x, y, -z));
+                let radius = placement.wheel_radius();
+                (axes, Vector::new(x, 0.0, -z), placement.wheel().profile().extent() + radius, radius)
+            }
+        };
+        let size = extent + x.abs() + y.abs() + z.abs();
+        let mut made = Self { lofted, axes, origin, radius, meshes: Vec::new(), size };
+        let (window, middle) = (request.window, lofted.along());
         for (strip, own) in lofted.loft().strips.iter().enumerate() {
             let [first, last] = own.reach();
             let [from, to] =
-                [window.eta[0] - MARGIN, window.eta[1] + MARGIN].map(|eta| (y + eta).clamp(first, last));
+                [window.eta[0] - MARGIN, window.eta[1] + MARGIN].map(|eta| (middle + eta).clamp(first, last));
             if from >= to {
                 continue;
             }
@@ -210,42 +235,61 @@ impl<'a> MeshedRail<'a> {
                 ));
             }
             let points = u.iter().flat_map(|&u| y.iter().map(move |&y| (u, y)));
-            let points: Vec<Vector> = points.map(|(u, y)| rail.point(own, u, y)).collect();
+            let points: Vec<Vector> = points.map(|(u, y)| made.point(own, u, y)).collect();
             let faces = cells(u.len(), y.len());
             let not_finite =
                 || Error::new("check", "points that are not finite", "finite points", "check the list");
             let mesh = Mesh::new(points, faces).ok_or_else(not_finite)?;
-            rail.meshes.push(MeshedStrip { strip, mesh, u, y });
+            made.meshes.push(MeshedStrip { strip, mesh, u, y });
         }
-        Ok(rail)
+        Ok(made)
     }
 
     fn point(&self, strip: &Strip, u: f64, y: f64) -> Vector {
         let [x, z] = strip.point(u, y).at;
-        let [cx, cy, cz] = self.lofted.origin();
-        let from = Vector::new(x - cx, y - cy, z - cz);
+        let from = match self.lofted.side() {
+            Side::Rail => Vector::new(x, y, z) - self.origin,
+            Side::Wheel => {
+                // Its slices are upside down: z counts outwards from R.
+                let (angle, distance) = ((y - self.lofted.along()) / self.radius, self.radius + z);
+                let rise = 2.0 * distance * (angle / 2.0).sin().powi(2) - z;
+                Vector::new(x, distance * angle.sin(), rise) - self.origin
+            }
+        };
         Vector::new(from.dot(self.axes[0]), from.dot(self.axes[1]), from.dot(self.axes[2]))
     }
 
-    /// Measures the sheet that a line meets first from above; where that is so much nearer to the wheel than the program's answer that it
-    /// may be another head, the one behind.
-    fn met(&self, at: [f64; 2], found: Answer, wheel: &Solid) -> Below {
-        let first = self.ray(at, RayOrigin::Above);
-        let (Below::At { zeta, .. }, AlongZeta::Heights(heights)) = (&first, wheel.along_zeta(at[0], at[1]))
+    /// The separation between a height of this body and one of the other \[mm\].
+    fn apart(&self, own: f64, other: f64) -> f64 {
+        if self.lofted.side() == Side::Rail { other - own } else { own - other }
+    }
+
+    /// Measures the sheet that a line meets first from the other body; where that is so much nearer than the program's answer that it may
+    /// be another head, the one behind.
+    fn met(&self, at: [f64; 2], found: Answer, other: &Solid) -> Met {
+        let rail = self.lofted.side() == Side::Rail;
+        let first = self.ray(at, if rail { RayOrigin::Above } else { RayOrigin::Below });
+        let (Met::At { zeta, .. }, AlongZeta::Heights(heights)) = (&first, other.along_zeta(at[0], at[1]))
         else {
             return first;
         };
-        let far = (found.separation - (heights[0].zeta - zeta)).abs() > FLANGEWAY / 2.0;
-        if far { self.ray(at, RayOrigin::DownFrom(zeta - FLANGEWAY)) } else { first }
+        if (found.separation - self.apart(*zeta, heights[0].zeta)).abs() <= FLANGEWAY / 2.0 {
+            return first;
+        }
+        let behind =
+            if rail { RayOrigin::DownFrom(zeta - FLANGEWAY) } else { RayOrigin::UpFrom(zeta + FLANGEWAY) };
+        self.ray(at, behind)
     }
 
-    fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> Below {
+    fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> Met {
+        let outward = if self.lofted.side() == Side::Rail { 1.0 } else { -1.0 };
         let met = self.meshes.iter().filter_map(|own| Some((own, own.mesh.along_zeta(xi, eta, origin)?)));
-        let Some((own, hit)) = met.max_by(|a, b| a.1.point.z.total_cmp(&b.1.point.z)) else {
-            return Below::Nothing;
+        let height = |hit: &Hit| outward * hit.point.z;
+        let Some((own, hit)) = met.max_by(|a, b| height(&a.1).total_cmp(&height(&b.1))) else {
+            return Met::Nothing;
         };
         if own.mesh.normal(hit.triangle).z < STEEPEST {
-            return Below::Steep;
+            return Met::Steep;
         }
         let strip = &self.lofted.loft().strips[own.strip];
         let mut place = parameters([&own.u, &own.y], &hit);
@@ -262,11 +306,11 @@ impl<'a> MeshedRail<'a> {
             let Some((mesh, hit)) =
                 mesh.and_then(|mesh| mesh.along_zeta(xi, eta, RayOrigin::Above).map(|hit| (mesh, hit)))
             else {
-                return Below::Steep;
+                return Met::Steep;
             };
             upright = mesh.normal(hit.triangle).z;
             if upright < STEEPEST {
-                return Below::Steep;
+                return Met::Steep;
             }
             (place, zeta) = (parameters([&u, &y], &hit), hit.point.z);
             share *= CLOSER;
@@ -275,7 +319,7 @@ impl<'a> MeshedRail<'a> {
         let inside = |at: f64, [from, to]: [f64; 2], least: f64| at > from + least && at < to - least;
         let own = inside(place[0], [0.0, strip.cells() as f64], NORMAL_CELL);
         if !(own && inside(place[1], [first, last], NORMAL_CELL * ALONG)) {
-            return Below::Steep;
+            return Met::Steep;
         }
         let own = inside(place[0].fract(), [0.0, 1.0], NORMAL_CELL);
         let smooth = own && inside(place[1], strip.interval_at(place[1]).y(), NORMAL_CELL * ALONG);
@@ -284,6 +328,6 @@ impl<'a> MeshedRail<'a> {
             let corner = |a: f64, b: f64| self.point(strip, place[0] + a * h, place[1] + b * k);
             (corner(0.5, 0.5) - corner(-0.5, -0.5)).cross(corner(-0.5, 0.5) - corner(0.5, -0.5)).normalize()
         };
-        Below::At { zeta, upright, normal: smooth.then(|| extrapolated(direction)) }
+        Met::At { zeta, upright, normal: smooth.then(|| extrapolated(direction)) }
     }
 }

@@ -53,18 +53,13 @@ impl Contact {
         self.spot.placement()
     }
 
-    /// Gives the placement for what takes a rail of one profile alone.
+    /// Gives the placement for what takes bodies of one profile alone.
     fn over_one_profile(&self) -> PyResult<&Placement> {
         let placement = self.placement()?;
-        if placement.lofted().is_some() {
-            let expected = "a rail of one profile, which has a midplane and an arc length";
+        if let Some(varying) = placement.varying() {
+            let expected = "bodies of one profile each, which have a midplane and an arc length";
             let advice = "take `separation` and `patch`";
-            return Err(exception(Error::new(
-                "contact",
-                "a rail that varies along the track",
-                expected,
-                advice,
-            )));
+            return Err(exception(Error::new("contact", varying, expected, advice)));
         }
         Ok(placement)
     }

@@ -6,7 +6,7 @@
 //!
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
-use crate::numerics::roots::{change, secant};
+use crate::numerics::roots::change;
 use crate::patch::skewed::slicer::Edge;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -46,15 +46,15 @@ const MOST_LINES: usize = 20_000;
 /// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
 pub(in crate::patch) const SMOOTH: f64 = 1e-9;
 
-/// Depth \[mm\] of an interval that is none: rounding of s, below which intervals come and go.
+/// Depth \[mm\] of an interval or a dip that is none: rounding of s, below which they come and go.
 const ROUNDING: f64 = 1e-11;
 
 /// Last step to an edge \[mm\], and to a lowest place, where s is flat.
 const TO_EDGE: f64 = 1e-9;
 pub(super) const TO_LOWEST: f64 = 1e-6;
 
-/// How far an edge is looked for from its estimate, as a share of half the interval's length.
-const BESIDE_EDGE: f64 = 0.02;
+/// How far an edge is looked for from its estimate, as shares of half the interval's length, the nearest first.
+const BESIDE_EDGE: [f64; 3] = [2e-3, 0.02, 0.1];
 
 /// An interval of η of the patch.
 #[derive(Debug, Clone, Copy)]
@@ -125,12 +125,14 @@ impl<'a> Varying<'a> {
         let middle = |of: &Interval| 0.5 * (of.eta[0] + of.eta[1]);
         let square = half(&a).powi(2) + share * (half(&b).powi(2) - half(&a).powi(2));
         let (half, middle) = (square.sqrt(), middle(&a) + share * (middle(&b) - middle(&a)));
-        let (near, approach) = (BESIDE_EDGE * half, self.approach);
+        let approach = self.approach;
         let mut found = [0.0; 2];
         for (found, outward) in found.iter_mut().zip([-1.0, 1.0]) {
             let guess = middle + outward * half;
-            let depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
-            *found = secant(depth, [guess - outward * near, guess + outward * near], TO_EDGE)?;
+            let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
+            let around = BESIDE_EDGE.map(|share| [-share, share].map(|by| guess + outward * by * half));
+            let held = around.into_iter().find(|ends| depth(ends[0]) < 0.0 && depth(ends[1]) >= 0.0)?;
+            *found = change(depth, held, TO_EDGE);
         }
         Some(found)
     }
@@ -200,8 +202,10 @@ impl<'a> Varying<'a> {
         let dips: Vec<usize> = (1..points.len().max(1) - 1)
             .filter(|&k| {
                 let [a, s, b] = [k - 1, k, k + 1].map(|k| points[k][1]);
-                // As far below as a parabola through the three may be, twice.
-                s <= a && s <= b && (s - approach < 0.5 * ((a - s) + (b - s)) || s < approach)
+                // As far below as a parabola through the three may be, twice; of a stretch that is level, as on a flat, no place is lower.
+                let [before, after] = [a - s, b - s];
+                let dip = before >= 0.0 && after >= 0.0 && before.max(after) > ROUNDING;
+                dip && (s - approach < 0.5 * (before + after) || s < approach)
             })
             .collect();
         for k in dips.into_iter().rev() {

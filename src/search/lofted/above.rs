@@ -3,6 +3,7 @@
 //! Over a rail that varies this is a wheel of revolution. Over a wheel that varies it is an extruded rail, with the world upside down:
 //! z counts downward then, for both bodies, so that the rail is above the wheel.
 
+use crate::lofted::Laid;
 use crate::profile::Section;
 use crate::search::locus::Attitude;
 
@@ -109,6 +110,14 @@ impl<'a> SweptAbove<'a> {
                 let [x, y, z] = self.turned([x, y, z]);
                 [x + offset, y + along, z]
             }
+        }
+    }
+
+    /// How the varying body's surface lies in its own axes; `along` \[mm\] of it is under the middle of the axle.
+    pub fn laid(&self, along: f64) -> Laid {
+        match self.varying {
+            Varying::Rail => Laid::Along(along),
+            Varying::Wheel => Laid::Around { radius: self.attitude.radius, lowest: along },
         }
     }
 

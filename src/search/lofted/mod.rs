@@ -3,14 +3,13 @@
 //! The vertical gap is a function over the varying body's surface. Its least value is found by branch and bound: parts of that surface,
 //! down to pieces of one cell, stand against parts of the other body's profile, which is swept. A plane that touches a part of the
 //! swept body from below bounds the gap over a part of the surface from below, to second order of their sizes. What is left is followed
-//! down by Newton's method. A wheel that varies is a surface that is wrapped around its axle (`wrap`), and upside down the rail is the
+//! down by Newton's method. A wheel that varies is a surface that is wrapped around its axle, and upside down the rail is the
 //! swept body above it (`above`).
 
 mod above;
 mod node;
 mod place;
 mod settle;
-mod wrap;
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -22,7 +21,8 @@ use super::locus::Attitude;
 use super::over_rail::Work;
 use super::touch::{Contact, Pose, Selection, Touch};
 use crate::error::{Error, Result};
-use crate::lofted::{Loft, LoftedWheel, Strip, turned};
+use crate::lofted::{Loft, LoftedBody, LoftedWheel, Strip, turned};
+use crate::placement::Pair;
 use crate::profile::{Profile, Section, Side};
 use above::{SweptAbove, Varying};
 use node::{BoundPart, Part};
@@ -113,29 +113,40 @@ impl LoftedPair {
         Self::of(loft, Varying::Rail, wheel, [radius, 0.0])
     }
 
-    /// Lowers a single wheel, whose profile's origin stands at `along` \[mm\] of the list, until it touches: the height \[mm\] of that origin
-    /// over the slices' one, and the contacts of the selection, the lowest first. `None` if no part of it is over the rail.
+    /// Lowers a single wheel until it touches: the height \[mm\] of its profile's origin over the rail's one, and the contacts of the
+    /// selection, the lowest first. That origin stands at `along` \[mm\] of the list of a rail that varies; one that varies itself is turned
+    /// by `pitch` \[rad\], + forward at the bottom. `None` if no part of it is over the rail.
     ///
     /// # Errors
     /// A rail that follows the wheel's shape all over.
     pub fn touch(
         &self,
         pose: &Pose,
-        along: f64,
+        [along, pitch]: [f64; 2],
         selection: &Selection,
     ) -> Result<Option<(f64, Vec<Contact>)>> {
         let mut search = self.search();
-        search.stand_at(along, 0.0);
+        search.stand_at(along, pitch);
         let attitude = pose.attitude(self.radius);
         let lowest = search.lower(&attitude, selection.within);
         if search.gave_up {
-            let expected = "slices over which a wheel touches at places, not all over";
-            return Err(Error::new("rail", "too many places", expected, "check the slices and the wheel"));
+            return Err(self.too_close());
         }
         Ok(lowest.map(|lowest| {
             let touch = search.collect(&attitude, -lowest.gap, selection);
             (touch.height, touch.contacts.to_vec())
         }))
+    }
+
+    /// Prepares a pair one body of which varies: that body.
+    ///
+    /// # Errors
+    /// A profile of the other one with no part that faces it.
+    pub fn of_pair(pair: &Pair, varying: &LoftedBody) -> Result<Self> {
+        match varying {
+            LoftedBody::Rail(loft) => Self::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius()),
+            LoftedBody::Wheel(wheel) => Self::turning(wheel, pair.rail()),
+        }
     }
 
     /// Prepares a wheel that varies and a rail of one profile.
@@ -173,6 +184,17 @@ impl LoftedPair {
         search
     }
 
+    /// Says that so many places touch at once that no search tells them apart.
+    pub(super) fn too_close(&self) -> Error {
+        let (place, other) = match self.varying {
+            Varying::Rail => ("rail", "wheel"),
+            Varying::Wheel => ("wheel", "rail"),
+        };
+        let expected = format!("slices over which rail and wheel touch at places, not all over the {other}");
+        let advice = "look at the slices nearby, or lower `within`";
+        Error::new(place, "a surface too close to the other one", expected, advice)
+    }
+
     /// Whether it is the wheel that varies.
     pub(super) fn turning_wheel(&self) -> bool {
         self.varying == Varying::Wheel
@@ -184,7 +206,12 @@ impl LoftedPair {
     }
 }
 
-impl LoftedSearch<'_> {
+impl<'a> LoftedSearch<'a> {
+    /// The bodies that it searches over.
+    pub fn pair(&self) -> &'a LoftedPair {
+        self.pair
+    }
+
     /// Moves the axle's middle to a place \[mm\] of the list of a rail that varies, or turns a wheel that varies by a pitch \[rad\], +
     /// forward at the bottom: −pitch of it lies lowest.
     pub fn stand_at(&mut self, along: f64, pitch: f64) {

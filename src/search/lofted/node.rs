@@ -1,8 +1,7 @@
 //! Parts of a lofted body with their control points, and lower bounds of the gap over them.
 
 use super::above::{SweptAbove, Varying};
-use super::wrap::{directions, on_wheel};
-use crate::lofted::{Interval, Loft};
+use crate::lofted::{Interval, Loft, directions, on_wheel};
 use crate::numerics::interval::product;
 use crate::search::bounds::Bounds;
 

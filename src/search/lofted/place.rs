@@ -27,6 +27,8 @@ struct Place {
     kinks: [bool; 2],
     /// How far ahead of the wheel's centre it lies \[mm\].
     y: f64,
+    /// Of a wheel that varies, the angle around it as its slices count, and that of the normal out of the meridian plane \[rad\].
+    on_wheel: [f64; 2],
 }
 
 impl Place {
@@ -49,6 +51,7 @@ impl Place {
                 curvatures: [section, if *kink { f64::INFINITY } else { above.curvature }],
                 kinks: [ends, *kink],
                 y: below.own.y - along - over.attitude.along,
+                on_wheel: [0.0; 2],
             };
         }
         let (sin, cos) = ((below.own.y - along) / radius).sin_cos();
@@ -66,6 +69,7 @@ impl Place {
             curvatures: [if *kink { f64::NEG_INFINITY } else { -above.curvature }, -section],
             kinks: [*kink, ends],
             y: over.seen(below.at)[1] - over.attitude.along,
+            on_wheel: [below.own.y / radius, (ny * cos + nz * sin).asin()],
         }
     }
 }
@@ -122,6 +126,8 @@ pub(super) fn contact(over: &SweptAbove<'_>, found: &Found, along: f64, height: 
         wheel_z: place.wheel[1],
         y: place.y,
         turn: ahead,
+        around: place.on_wheel[0],
+        lean: place.on_wheel[1],
         contact_angle: theta,
         wheel_angle: s.atan2(c),
         skew: on(eta).atan2(on([cos, 0.0, sin])),

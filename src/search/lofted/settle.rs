@@ -1,8 +1,7 @@
 //! Newton's method to the least gap near a place of a lofted body, within the strip that it is on.
 
 use super::above::{Above, SweptAbove};
-use super::wrap::SpacePoint;
-use crate::lofted::{SPACING, Strip};
+use crate::lofted::{SPACING, SpacePoint, Strip};
 
 /// Most steps. Newton's method takes four to six from a place within a tenth of a millimetre.
 const STEPS: usize = 40;
@@ -52,7 +51,7 @@ pub(super) struct Found {
 impl Gap<'_> {
     /// The varying body's point at a place, and the other one's above it; `None` where that does not reach.
     pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SpacePoint, Above)> {
-        let below = SpacePoint::new(self.strip.point(u, y), self.over, self.along);
+        let below = self.over.laid(self.along).point(self.strip.point(u, y));
         let above = self.over.above(self.over.seen(below.at))?;
         Some((below, above))
     }

@@ -1,7 +1,7 @@
 //! The second-order expansion of s at C, which Hertz's theory uses.
 
 use crate::placement::{Body, Placement};
-use crate::profile::Section;
+use crate::profile::{Section, Side};
 use crate::separation::axis::EtaAxis;
 use crate::separation::gap;
 use crate::separation::kernel::Kernel;
@@ -36,6 +36,9 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     let [along, mixed, across] = form(curvatures, around(placement.wheel()), placement.skew());
     if let Some(lofted) = placement.lofted() {
         let [xx, xy, yy] = lofted.bends().unwrap_or([f64::NAN; 3]);
+        if lofted.side() == Side::Wheel {
+            return [(xx - curvatures[0]) / 2.0, xy, yy / 2.0];
+        }
         let [own, mixed, across] = form([0.0, curvatures[1]], around(placement.wheel()), placement.skew());
         return [own - xx / 2.0, mixed - xy, across - yy / 2.0];
     }

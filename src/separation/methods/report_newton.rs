@@ -35,8 +35,8 @@ pub fn missing(placement: &Placement) -> Option<&'static str> {
     if placement.under().is_some() {
         return Some("a roller");
     }
-    if placement.lofted().is_some() {
-        return Some("a rail that varies along the track");
+    if let Some(varying) = placement.varying() {
+        return Some(varying);
     }
     let segments = placement.wheel().profile().segments().iter();
     let unknown = |shape| Printed::of(shape, &Station::AXES).is_none();
@@ -157,9 +157,6 @@ impl<'a> ReportNewton<'a> {
 impl Kernel for ReportNewton<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         let rail = self.rail_height(xi);
-        if self.placement.under().is_some() || self.placement.lofted().is_some() {
-            return out.fill(f64::NAN);
-        }
         let guess = self.placement.wheel().section.height(xi);
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
             let height = self.wheel_height(xi, eta, guess).unwrap_or_else(|| {

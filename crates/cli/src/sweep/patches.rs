@@ -77,7 +77,7 @@ fn patch(
     let place = Place::Wheelset { system: Arc::clone(table.system), position };
     let roll_by_load = case.standing().roll_by_load;
     let standing =
-        Standing { place, within: table.selection.within, roll_by_load, along: case.standing().along };
+        Standing { place, within: table.selection.within, roll_by_load, ..case.standing().clone() };
     let here = case.at(standing, scene::echo(&scene.at(&position), name)).as_one_of_many();
     let run = match Run::new(here, SILENT) {
         Err(error) if error.kind == ErrorKind::NoContact => {
