@@ -111,7 +111,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 impl FramedLoft {
     /// Accuracy of the height of a foot \[mm\] on bodies of usual size.
-    pub const ROUNDING: f64 = 1e-12;
+    pub const ROUNDING: f64 = 5e-13;
 
     /// Looks at a rail from C \[mm\], with y as its list counts, where its normal leans by θ \[rad\] to the left and by ν \[rad\] ahead:
     /// it is (−sinθ cosν, sinν, cosθ cosν).

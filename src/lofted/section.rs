@@ -5,6 +5,9 @@ use super::strip::Strip;
 use crate::error::{Error, Result};
 use crate::profile::{Polynomial, Profile, Segment, Shape};
 
+/// Distance \[mm\] of the ends of two parts beside each other from which on they do not join: more than the rounding of slices.
+const STEP: f64 = 1e-3;
+
 /// Returns the section at y \[mm\] through one of the strips, as far as its neighbours join it: exactly the cut of the surface, one
 /// cubic a cell.
 ///
@@ -25,13 +28,19 @@ pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
 /// Lists the strips that join each other across at y \[mm\] from one of them, by ascending x.
 pub fn joined(loft: &Loft, strip: usize, y: f64) -> Vec<usize> {
     let strips = &loft.strips;
+    let ends = |k: usize| [0.0, strips[k].cells() as f64].map(|u| strips[k].point(u, y).at);
+    let meets = |left: usize, right: usize| {
+        let ([_, a], [b, _]) = (ends(left), ends(right));
+        (a[0] - b[0]).hypot(a[1] - b[1]) <= STEP
+    };
     let beside = |part: Option<usize>| {
         part.and_then(|part| (0..strips.len()).find(|&k| strips[k].part == part && strips[k].holds(y)))
     };
-    let before = std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_sub(1)));
-    let mut run: Vec<usize> = before.collect();
+    let left = |&k: &usize| beside(strips[k].part.checked_sub(1)).filter(|&other| meets(other, k));
+    let right = |&k: &usize| beside(strips[k].part.checked_add(1)).filter(|&other| meets(k, other));
+    let mut run: Vec<usize> = std::iter::successors(Some(strip), left).collect();
     run.reverse();
-    run.extend(std::iter::successors(Some(strip), |&k| beside(strips[k].part.checked_add(1))).skip(1));
+    run.extend(std::iter::successors(Some(strip), right).skip(1));
     run
 }
 

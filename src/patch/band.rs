@@ -84,7 +84,8 @@ impl Band {
             let [low, high] = self.sides[end];
             low == high && (self.ends[end] == Some(End::Tip) || inside([low, high]))
         });
-        let root = self.ends.map(|end| matches!(end, None | Some(End::ProfileEnd)));
+        let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end][0] < self.sides[end][1];
+        let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
         let mut finder = EdgeFinder::new(outline.slicer.placement(), outline.slicer.approach());

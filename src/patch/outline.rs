@@ -37,7 +37,7 @@ impl Window {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum End {
-    /// A tip: the two branches meet in a single point with s(ξ, η) = δ.
+    /// A tip: the two branches meet in a single point with s(ξ, η) = δ, or stand at both ends of a line along which s is level.
     Tip,
     /// The window cuts the component.
     Window,

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use serde_json::Value;
 use wheelrail::case::{Run, SILENT};
 use wheelrail::error::Result;
 use wheelrail::lofted::{Joining, Loft, LoftedBody};
@@ -186,9 +187,18 @@ const FLOODED: [f64; 2] = [20.0, 70.0];
 /// Distance of s from δ \[mm\] within which a point may be on either side of the boundary.
 const ON_BOUNDARY: f64 = 1e-7;
 
-/// Whether every point of a flood fill is inside the patch where s < δ, and neighbours inside are of one component.
+/// Distance of s from δ \[mm\] at the points of a boundary.
+const OFF_BOUNDARY: f64 = 1e-6;
+
+/// Whether every point of a flood fill is inside the patch where s < δ, neighbours inside are of one component, and s = δ on the boundary.
 pub(super) fn floods(placement: &Placement, patch: &Patch) -> std::result::Result<usize, String> {
     let mut evaluator = Evaluator::new(placement);
+    for [xi, eta] in patch.components.iter().flat_map(|component| component.boundary.iter().copied()) {
+        let s = evaluator.separation(xi, eta);
+        if (s - patch.approach).abs() > OFF_BOUNDARY {
+            return Err(format!("({xi}, {eta}) of the boundary: s = {s}, δ = {}", patch.approach));
+        }
+    }
     let [columns, rows] = [0, 1].map(|k| (FLOODED[k] / FLOOD[k]) as i32);
     let mut inside = 0;
     let mut before: Vec<Option<usize>> = vec![None; 2 * rows as usize + 1];
@@ -388,5 +398,42 @@ fn forces_on_a_crossing_are_contact_s() -> Result<()> {
         compared += 1;
     }
     assert!(compared > 50, "{compared}");
+    Ok(())
+}
+
+/// Difference of a height under load from CONTACT's \[mm\], and distance of C from the middle of its patch along the rail.
+const HEIGHT: f64 = 1.5e-3;
+const OF_MIDDLE: f64 = 0.6;
+
+#[test]
+fn heights_and_patches_under_a_load_are_contact_s() -> Result<()> {
+    let Some(copy) = std::env::var_os("WHEELRAIL_CONTACT") else { return Ok(()) };
+    let profiles = Path::new(&copy).join("testbank/profiles");
+    let mut compared = 0;
+    // CONTACT's height is prescribed in these, or under another force than its patches carry.
+    for case in cases().iter().filter(|case| case["z_first_touch"].is_null()) {
+        let number = |value: &Value| value.as_f64().unwrap();
+        let patches = case["patches"].as_array().unwrap();
+        let load: f64 = patches.iter().map(|own| number(&own["fn"]) * number(&own["deltcp_tr"]).cos()).sum();
+        let more = format!("along = {:?}\nwithin = 1.0\n[patch]\nload = {load:?}\n", number(&case["s"]));
+        let text = scene_of(case, "cubic", &more);
+        let run = Run::new(scene::resolve(&scene::parse(&text, false)?, &profiles, "")?, SILENT)?;
+        let right = run.parts.iter().filter(|part| part.site.side() == Some(TrackSide::Right));
+        let parts: Vec<_> = right.collect();
+        let contact = &parts[0].site.contact;
+        let found = contact.found.as_ref().unwrap();
+        let sunk = contact.approach.unwrap() / contact.placement.upright();
+        let place = format!("{} {}", case["group"], case["case"]);
+        // Down as CONTACT's.
+        let height = sunk - found.height_mm;
+        assert!((height - number(&case["z"])).abs() < HEIGHT, "{place}: {height} {}", case["z"]);
+        assert_eq!(parts.len(), patches.len(), "{place}");
+        let near = |own: &Value| (number(&own["ycp_r"]) - found.place.rail_x_mm).abs() < OF_MIDDLE;
+        let own = patches.iter().find(|own| near(own)).unwrap_or_else(|| panic!("{place}: {found:?}"));
+        let off = (number(&own["pen"]) / contact.approach.unwrap()).powf(1.5) - 1.0;
+        assert!(off.abs() < FORCES, "{place}: force off by {off:.4}");
+        compared += 1;
+    }
+    assert_eq!(compared, 27);
     Ok(())
 }

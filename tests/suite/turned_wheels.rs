@@ -117,7 +117,7 @@ fn a_cone_with_a_flat_has_the_height_of_its_surface_in_space() -> Result<()> {
             let at = [random.between(-9.0, 9.0), random.between(-60.0, 60.0)];
             let found = evaluator.separation(at[0], at[1]) + evaluator.lower_height(at[0], at[1]);
             let expected = flattened(&placement, half, at);
-            assert!((found - expected).abs() < 1e-10, "scene {scene}, {at:?}: {found} {expected}");
+            assert!((found - expected).abs() < 5e-13, "scene {scene}, {at:?}: {found} {expected}");
         }
         // The frame has the axle where the wheelset has it, and rail and wheel face each other at C unless an edge touches.
         let frame = placement.lofted_wheel().unwrap();
@@ -192,7 +192,10 @@ fn a_wheel_on_its_flat_is_run_like_any_other() -> Result<()> {
         extent.eta[1] - extent.eta[0]
     };
     let lengths = [&round, &edge, &flat].map(length);
-    assert!(lengths[1] < lengths[0] && lengths[0] < 30.0 && lengths[2] > 60.0, "{lengths:?}");
+    assert!(
+        lengths[1] < lengths[0] && lengths[0] < 30.0 && (59.0..64.0).contains(&lengths[2]),
+        "{lengths:?}"
+    );
     // Left and right are mirror images.
     let areas: Vec<f64> =
         edge.parts.iter().map(|part| part.analysis.patch.as_ref().unwrap().area()).collect();

@@ -9,6 +9,10 @@ use crate::placement::Placement;
 /// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart.
 const SHALLOW: f64 = 1e-9;
 
+/// Width \[mm\] of such an interval from which on the tip is blunt, as on a flat along which s is level: that of a relative radius of a
+/// kilometre along the track.
+const BLUNT: f64 = 0.1;
+
 /// Returns the bands in a window, and places at which s may be least.
 pub(in crate::patch) fn bands(
     varying: &mut Varying<'_>,
@@ -113,7 +117,8 @@ fn bound(found: &Interval, xi: f64, [window, reach]: [f64; 2], approach: f64) ->
     }
 }
 
-/// Returns the side of a band: without width at a tip.
+/// Returns the side of a band: without width at a tip that is not blunt.
 fn side(found: &Interval, end: Option<End>) -> [f64; 2] {
-    if end == Some(End::Tip) { [found.lowest[0]; 2] } else { found.eta }
+    let [low, high] = found.eta;
+    if end == Some(End::Tip) && high - low < BLUNT { [found.lowest[0]; 2] } else { found.eta }
 }
