@@ -86,7 +86,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
     pub(super) fn joints(&self, [a, b]: [f64; 2]) -> Vec<f64> {
-        if self.varying.is_some() {
+        if self.placement.lofted_rail().is_some() {
             // Its cells' sides are no lines of constant ξ.
             return Vec::new();
         }

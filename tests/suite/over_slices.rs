@@ -187,8 +187,9 @@ const FLOODED: [f64; 2] = [20.0, 70.0];
 /// Distance of s from δ \[mm\] within which a point may be on either side of the boundary.
 const ON_BOUNDARY: f64 = 1e-7;
 
-/// Distance of s from δ \[mm\] at the points of a boundary.
-const OFF_BOUNDARY: f64 = 1e-6;
+/// Distance of s from δ \[mm\] at the points of a boundary: beside edges of a surface, where its curves are halved no more. Elsewhere it is
+/// below 1e-6.
+const OFF_BOUNDARY: f64 = 2e-4;
 
 /// Whether every point of a flood fill is inside the patch where s < δ, neighbours inside are of one component, and s = δ on the boundary.
 pub(super) fn floods(placement: &Placement, patch: &Patch) -> std::result::Result<usize, String> {

@@ -65,7 +65,9 @@ fn a_radius_that_does_not_vary_has_the_separation_and_patch_of_the_round_wheel()
             if found.is_nan() || expected.is_nan() {
                 continue;
             }
-            assert!((found - expected).abs() < 1e-10, "{contact:?} {at:?}: {found} {expected}");
+            // A steep surface is off along its normal.
+            let steep = 1.0 + other.separation_and_gradient(at[0], at[1]).1[0].abs();
+            assert!((found - expected).abs() < 1e-10 * steep, "{contact:?} {at:?}: {found} {expected}");
             let [a, b] = [own.normals(at[0], at[1]), other.normals(at[0], at[1])].map(|n| n.wheel.unwrap());
             assert!((*a - *b).norm() < 1e-9, "{contact:?} {at:?}: {a:?} {b:?}");
             alike += 1;

@@ -6,8 +6,10 @@ use crate::patch::band::{Band, Turn};
 use crate::patch::outline::{End, Window};
 use crate::placement::Placement;
 
-/// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart.
+/// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart. In a crease, whose bottom is
+/// found less exactly, its width \[mm\].
 const SHALLOW: f64 = 1e-9;
+const NARROW: f64 = 1e-3;
 
 /// Width \[mm\] of such an interval from which on the tip is blunt, as on a flat along which s is level: that of a relative radius of a
 /// kilometre along the track.
@@ -112,8 +114,9 @@ fn close(band: &mut Band, xi: f64, end: Option<End>, side: [f64; 2]) {
 fn bound(found: &Interval, xi: f64, [window, reach]: [f64; 2], approach: f64) -> End {
     match () {
         () if xi == window => End::Window,
-        () if xi == reach || approach - found.lowest[1] > SHALLOW => End::ProfileEnd,
-        () => End::Tip,
+        () if xi == reach => End::ProfileEnd,
+        () if approach - found.lowest[1] <= SHALLOW || found.eta[1] - found.eta[0] < NARROW => End::Tip,
+        () => End::ProfileEnd,
     }
 }
 
