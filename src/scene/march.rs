@@ -9,26 +9,37 @@ use super::data::Scene;
 use super::doubts::doubts_of_keys;
 use super::profile_data::ProfileData;
 use super::profiles::{
-    Given, Resolved, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted,
-    wheel_of, wheel_radius,
+    Given, is_chain_file, profile_from_file, rail_of, reject_measured_keys, turned_and_shifted, wheel_of,
+    wheel_radius,
 };
 use super::standing::{position, rails, wheels, within};
-use crate::case::usual;
+use crate::case::{Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};
 use crate::files::read_bytes;
-use crate::lofted::{Flat, Loft, LoftedWheel, Slice};
+use crate::lofted::{Flat, Loft, LoftedWheel, Slice, section};
 use crate::measured::{self, Measured, SliceList, listed_body};
+use crate::numerics::bodies::Bodies;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Profile, Side, trace};
 use crate::search::{LoftedPair, March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
 
+/// The march of a scene.
+#[derive(Debug, Clone)]
+pub struct SceneMarch {
+    /// Ready to be computed.
+    pub march: March,
+    /// The profiles of both sides: of a body that varies a section of it, or the profile before it was made to vary.
+    pub profiles: Profiles,
+    /// What the lists leave undefined, and what is doubtful.
+    pub warnings: Vec<String>,
+}
+
 /// Resolves a scene into a march along its rails, at least one of which is a list of slices without `along`, or around its wheels, at
 /// least one of which has a flat, is out of round or is a list of slices without `angle`. Paths in the scene are relative to `folder`.
-/// Also returns what the lists leave undefined.
 ///
 /// # Errors
 /// Anything that is wrong; the error names the key.
-pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
+pub fn march(scene: &Scene, folder: &Path) -> Result<SceneMarch> {
     let (Some(track), Some(wheelset)) = (&scene.track, &scene.wheelset) else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a march moves a wheelset along its track"));
@@ -40,12 +51,14 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
     let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
     let warnings = doubts_of_keys(scene).iter().map(ToString::to_string).collect();
     let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings };
-    let right = sides.side(true, &mut lists)?;
-    let system = if scene.left.is_none() && scene.right.is_none() {
-        WheelsetOnTrack::symmetrical(right)
+    let (own, right) = sides.side(true, &mut lists)?;
+    let (system, left) = if scene.left.is_none() && scene.right.is_none() {
+        (WheelsetOnTrack::symmetrical(right), None)
     } else {
-        WheelsetOnTrack::of_sides(sides.side(false, &mut lists)?, right)
+        let (other, left) = sides.side(false, &mut lists)?;
+        (WheelsetOnTrack::of_sides(left, right), Some(other))
     };
+    let profiles = Profiles { right: own, left };
     let [from, to] = lists.reach;
     if from == f64::NEG_INFINITY && !system.turning() {
         let expected = "a rail that varies: a list .slcs of slices without `along`; or such a wheel";
@@ -61,7 +74,8 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }
     let selection = Selection { within, apart: ONE_CONTACT };
-    Ok((March { system, position, selection, reach: lists.reach, pitch }, lists.warnings))
+    let march = March { system, position, selection, reach: lists.reach, pitch };
+    Ok(SceneMarch { march, profiles, warnings: lists.warnings })
 }
 
 /// What both sides are made of.
@@ -74,7 +88,7 @@ struct Sides<'a> {
 
 impl Sides<'_> {
     /// Makes one side, whose rail or wheel varies, or neither.
-    fn side(&self, right: bool, lists: &mut Lists) -> Result<SideOnTrack> {
+    fn side(&self, right: bool, lists: &mut Lists) -> Result<(SideProfiles, SideOnTrack)> {
         let Self { scene, folder, rails, wheels } = *self;
         let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
         let own = own.as_ref();
@@ -84,7 +98,7 @@ impl Sides<'_> {
             .map(|(body, own)| if own.is_some() { format!("{name}: {body}") } else { body.to_owned() });
         let (rail, given) = (rail.unwrap_or(&scene.rail), Given::new());
         let wheel = wheel.unwrap_or(&scene.wheel);
-        let (wheel, radius) = self.wheel(wheel, &wheel_key, lists)?;
+        let Wheel { profile, radius, turning } = self.wheel(wheel, &wheel_key, lists)?;
         let axle = Wheelset::new(wheels, radius)?;
         let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
         if deviation.roll != 0.0 {
@@ -97,36 +111,40 @@ impl Sides<'_> {
         let Some(list) = list_of(rail, Side::Rail) else {
             let rail = rail_of(rail, &rail_key, (folder, &given))?.profile;
             let track = moved(Track::new(&rail, rails)?)?;
-            return match wheel {
-                Wheel::Round(wheel) => {
-                    SideOnTrack::new(&Pair::new(rail, wheel.profile, radius)?, track, axle)
-                }
-                Wheel::Varying(wheel) => {
-                    Ok(SideOnTrack::lofted(Arc::new(LoftedPair::turning(&wheel, &rail)?), track, axle))
+            let pair = Pair::new(rail, profile, radius)?;
+            let side = match turning {
+                None => SideOnTrack::new(&pair, track, axle)?,
+                Some(wheel) => {
+                    let pair = LoftedPair::turning(&wheel, pair.rail())?;
+                    SideOnTrack::lofted(Arc::new(pair), track, axle)
                 }
             };
+            return Ok((SideProfiles { pair, measured: Bodies::default(), loft: None }, side));
         };
         let RailDistance::Spacing(spacing) = rails else {
             let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
             return Err(Error::new("track", "a gauge", expected, "give spacing instead of gauge"));
         };
-        let Wheel::Round(wheel) = wheel else {
+        if turning.is_some() {
             let found = "a wheel that varies on a rail that varies";
             let advice = "give the wheel one profile, or the rail a section by `along`";
             return Err(Error::new(wheel_key, found, "one of the two", advice));
-        };
-        let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
+        }
+        let loft = Arc::new(loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?);
         lists.take(&loft, &rail_key);
-        let pair = LoftedPair::new(Arc::new(loft), &wheel.profile, radius)?;
-        Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
+        let lofted = LoftedPair::new(Arc::clone(&loft), &profile, radius)?;
+        let first = loft.strips.first().map_or(0.0, |strip| strip.reach()[0]);
+        let section = section(&loft, loft.widest(first).unwrap_or(0), first)?;
+        let pair = Pair::new(section, profile, radius)?;
+        let side = SideOnTrack::lofted(Arc::new(lofted), moved(Track::between_origins(spacing)?)?, axle);
+        Ok((SideProfiles { pair, measured: Bodies::default(), loft: Some(loft) }, side))
     }
 
-    /// Makes the wheel of one side, with its nominal rolling radius \[mm\].
-    fn wheel(&self, data: &ProfileData, key: &str, lists: &mut Lists) -> Result<(Wheel, f64)> {
-        let made = if let Some(list) = list_of(data, Side::Wheel) {
+    /// Makes the wheel of one side.
+    fn wheel(&self, data: &ProfileData, key: &str, lists: &mut Lists) -> Result<Wheel> {
+        let wheel = if let Some(list) = list_of(data, Side::Wheel) {
             let radius = wheel_radius(self.scene, data, key)?;
-            let wheel = wheel_of_slices(data, &self.folder.join(list), radius);
-            (Wheel::Varying(wheel.map_err(|error| error.within(key))?), radius)
+            wheel_of_slices(data, &self.folder.join(list), radius).map_err(|error| error.within(key))?
         } else {
             let plain = ProfileData { flat: None, radii: None, ..data.clone() };
             let (wheel, radius) = wheel_of(self.scene, &plain, key, (self.folder, &Given::new()))?;
@@ -135,22 +153,25 @@ impl Sides<'_> {
                 .warnings
                 .extend(findings.map(|finding| format!("{key}: {}: {}", finding.place, finding.found)));
             let turning = varying(data, &wheel.profile, radius).map_err(|error| error.within(key))?;
-            (turning.map_or_else(|| Wheel::Round(Box::new(wheel)), Wheel::Varying), radius)
+            Wheel { profile: wheel.profile, radius, turning }
         };
-        if let Wheel::Varying(wheel) = &made.0 {
-            lists.warnings.extend(wheel.warnings().iter().map(|warning| format!("{key}: {warning}")));
-        }
+        let doubts = wheel.turning.iter().flat_map(LoftedWheel::warnings);
+        lists.warnings.extend(doubts.map(|warning| format!("{key}: {warning}")));
         lists
             .warnings
-            .extend(usual::radius(&format!("{key}: radius"), made.1).map(|doubt| doubt.to_string()));
-        Ok(made)
+            .extend(usual::radius(&format!("{key}: radius"), wheel.radius).map(|doubt| doubt.to_string()));
+        Ok(wheel)
     }
 }
 
-/// A wheel: of one profile, or one that varies around its axle.
-enum Wheel {
-    Round(Box<Resolved>),
-    Varying(LoftedWheel),
+/// A wheel of one profile, or one that varies around its axle.
+struct Wheel {
+    /// Its profile: of a list of slices the first one.
+    profile: Profile,
+    /// Nominal rolling radius \[mm\].
+    radius: f64,
+    /// How it varies.
+    turning: Option<LoftedWheel>,
 }
 
 /// Makes the wheel with the flat or the radii of these keys; `None` without either.
@@ -170,7 +191,7 @@ fn varying(data: &ProfileData, profile: &Profile, radius: f64) -> Result<Option<
 }
 
 /// Reads the slices of a list around a wheel, and joins them.
-fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<LoftedWheel> {
+fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<Wheel> {
     if data.flat.is_some() || data.radii.is_some() {
         let expected = "neither beside a list .slcw without `angle`, which has them in its slices";
         return Err(Error::new("", "`flat` or `radii`", expected, "remove them, or give `angle`"));
@@ -184,9 +205,10 @@ fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<Lofte
         slice.features = slice.features.iter().rev().map(from_left).collect();
     }
     let place = path.display().to_string();
-    LoftedWheel::new(&slices, radius, data.surface.unwrap_or_default())
-        .map(|wheel| wheel.with_warnings(doubts))
-        .map_err(|error| error.within(place))
+    let wheel = LoftedWheel::new(&slices, radius, data.surface.unwrap_or_default())
+        .map_err(|error| error.within(place))?;
+    let profile = slices.swap_remove(0).profile;
+    Ok(Wheel { profile, radius, turning: Some(wheel.with_warnings(doubts)) })
 }
 
 /// What the lists of both sides say.

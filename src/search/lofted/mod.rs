@@ -7,6 +7,7 @@
 //! swept body above it (`above`).
 
 mod above;
+mod cut;
 mod node;
 mod place;
 mod settle;
@@ -25,6 +26,7 @@ use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftedWheel, Strip, turned};
 use crate::profile::{Profile, Section, Side};
 use above::{SweptAbove, Varying};
+pub use cut::Cut;
 use node::{BoundPart, Part};
 use place::{candidate, contact};
 use settle::{Found, Gap, Settled, apart};
@@ -178,6 +180,11 @@ impl LoftedPair {
         self.varying == Varying::Wheel
     }
 
+    /// Coordinate in a wheel's list \[mm\] of what lies lowest at a pitch \[rad\].
+    fn lowest(&self, pitch: f64) -> f64 {
+        self.radius * turned(-pitch, self.middle)
+    }
+
     /// The other body at an attitude.
     fn over<'a>(&'a self, attitude: &'a Attitude) -> SweptAbove<'a> {
         SweptAbove::new(&self.section, attitude, self.varying)
@@ -190,7 +197,7 @@ impl LoftedSearch<'_> {
     pub fn stand_at(&mut self, along: f64, pitch: f64) {
         self.along = match self.pair.varying {
             Varying::Rail => along,
-            Varying::Wheel => self.pair.radius * turned(-pitch, self.pair.middle),
+            Varying::Wheel => self.pair.lowest(pitch),
         };
     }
 
