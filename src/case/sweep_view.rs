@@ -138,8 +138,10 @@ impl Shown<'_> {
         let origin = section.translation.vector;
         let place = [origin.x, origin.y, section.rotation.angle(), yaw, ahead];
         out.places[5 * number..5 * number + 5].copy_from_slice(&place);
-        let stands = (self.stands)(self.positions[number]);
-        let (of, pieces) = match self.system.cut(out.right, &position, stands, ahead) {
+        let [along, pitch] = (self.stands)(self.positions[number]);
+        let stands = [self.system.along(out.right, &position, along), pitch];
+        let on_track = if out.right { self.system.right() } else { self.system.left() };
+        let (of, pieces) = match on_track.cut(stands, yaw, ahead) {
             Some(Cut::Rail(pieces)) => (&mut out.rails, pieces),
             Some(Cut::Wheel(pieces)) => (&mut out.wheels, pieces),
             None => return,

@@ -154,7 +154,7 @@ pub struct SideTouch<'a> {
 }
 
 /// Signs of x of the left and the right side, in the order of every pair of sides.
-pub(super) const SIGNS: [f64; 2] = [-1.0, 1.0];
+const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// Most times that both sides are lowered for one roll. Newton's method takes two to six; a contact beyond
 /// 73° makes it leave the root, and from the far side of the flange it takes as many again. Halving alone

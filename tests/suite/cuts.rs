@@ -32,8 +32,11 @@ fn distance(pieces: &[Vec<[f64; 2]>], [x, z]: [f64; 2]) -> f64 {
 }
 
 /// The cut of a side through the place of a row.
-fn cut(march: &March, row: &SweepRow, stands: [f64; 2]) -> Option<Cut> {
-    march.system.cut(row.side == TrackSide::Right, &march.position, stands, row.contact.y)
+fn cut(march: &March, row: &SweepRow, [along, pitch]: [f64; 2]) -> Option<Cut> {
+    let right = row.side == TrackSide::Right;
+    let (side, sign) = if right { (march.system.right(), 1.0) } else { (march.system.left(), -1.0) };
+    let stands = [march.system.along(right, &march.position, along), pitch];
+    side.cut(stands, sign * march.position.yaw, row.contact.y)
 }
 
 #[test]
@@ -53,11 +56,8 @@ fn the_section_of_a_crossing_holds_its_places_of_contact() -> Result<()> {
                 assert!(pieces.iter().map(Vec::len).sum::<usize>() > 100, "{place}");
             }
         }
-        assert_eq!(
-            march.system.cut(true, &march.position, [0.0, 0.0], 1e4),
-            Some(Cut::Rail(Vec::new())),
-            "beyond the list"
-        );
+        let beyond = march.system.right().cut([1e4, 0.0], yaw, 0.0);
+        assert_eq!(beyond, Some(Cut::Rail(Vec::new())));
     }
     Ok(())
 }
@@ -75,7 +75,7 @@ fn the_section_of_a_wheel_with_a_flat_holds_its_places_of_contact() -> Result<()
             }
         }
         // A plane beyond the wheel cuts none of it.
-        assert_eq!(march.system.cut(true, &march.position, [0.0, 0.0], 600.0), Some(Cut::Wheel(Vec::new())));
+        assert_eq!(march.system.right().cut([0.0; 2], yaw, 600.0), Some(Cut::Wheel(Vec::new())));
     }
     Ok(())
 }

@@ -1,11 +1,6 @@
 //! Sections by planes across the track through a body that varies.
 
-use super::LoftedPair;
-use super::above::Varying;
 use crate::lofted::{Loft, Strip};
-use crate::search::position::Position;
-use crate::search::side::SidePair;
-use crate::search::wheelset::{SIGNS, WheelsetOnTrack};
 
 /// Most steps to the place around an axle at which a plane cuts a circle. The radius varies by far less than it is: each gains two digits.
 const STEPS: usize = 8;
@@ -25,43 +20,28 @@ pub enum Cut {
     Wheel(Vec<Vec<[f64; 2]>>),
 }
 
-impl WheelsetOnTrack {
-    /// Cuts the body of a side that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin, as
-    /// [`Contact::y`](crate::search::Contact::y) counts. The middle of the axle is at `along` \[mm\], and −pitch \[rad\] of a wheel is
-    /// lowest. `None` of a side with bodies of one profile; no pieces where the plane meets no surface.
-    pub fn cut(&self, right: bool, position: &Position, [along, pitch]: [f64; 2], ahead: f64) -> Option<Cut> {
-        let side = usize::from(right);
-        let SidePair::Lofted(pair) = &self.sides[side].pair else { return None };
-        Some(match pair.varying {
-            Varying::Rail => Cut::Rail(pair.cut_rail(self.along(right, position, along) + ahead)),
-            Varying::Wheel => Cut::Wheel(pair.cut_wheel(pitch, SIGNS[side] * position.yaw, ahead)),
-        })
-    }
+/// Cuts a rail by the plane at y \[mm\] of its list.
+pub(super) fn cut_rail(loft: &Loft, y: f64) -> Cut {
+    Cut::Rail(pieces(loft, |line| line(y)))
 }
 
-impl LoftedPair {
-    /// Cuts the rail by the plane at y \[mm\] of its list.
-    fn cut_rail(&self, y: f64) -> Vec<Vec<[f64; 2]>> {
-        pieces(&self.loft, |line| line(y))
-    }
-
-    /// Cuts the wheel; `yaw` \[rad\] is that of the side.
-    fn cut_wheel(&self, pitch: f64, yaw: f64, ahead: f64) -> Vec<Vec<[f64; 2]>> {
-        let (lowest, (sin, cos), radius) = (self.lowest(pitch), yaw.sin_cos(), self.radius);
-        pieces(&self.loft, |line| {
-            let mut angle = (ahead / radius).asin();
-            for _ in 1..STEPS {
-                let [x, height] = line(lowest + radius * angle)?;
-                let next = ((ahead - x * sin) / (cos * (radius + height))).asin();
-                let step = std::mem::replace(&mut angle, next) - next;
-                if step.abs() <= SETTLED {
-                    break;
-                }
-            }
+/// Cuts a wheel of this nominal rolling radius \[mm\], whose lowest part is at `lowest` \[mm\] of its list, by the plane across the track
+/// which lies `ahead` \[mm\] of its profile's origin; `yaw` \[rad\] is that of the side.
+pub(super) fn cut_wheel(loft: &Loft, radius: f64, lowest: f64, yaw: f64, ahead: f64) -> Cut {
+    let (sin, cos) = yaw.sin_cos();
+    Cut::Wheel(pieces(loft, |line| {
+        let mut angle = (ahead / radius).asin();
+        for _ in 1..STEPS {
             let [x, height] = line(lowest + radius * angle)?;
-            Some([x, -height])
-        })
-    }
+            let next = ((ahead - x * sin) / (cos * (radius + height))).asin();
+            let step = std::mem::replace(&mut angle, next) - next;
+            if step.abs() <= SETTLED {
+                break;
+            }
+        }
+        let [x, height] = line(lowest + radius * angle)?;
+        Some([x, -height])
+    }))
 }
 
 /// The curve of a share of a part's arc length: its point \[x, z\] at y \[mm\]; `None` where the part is interrupted.

@@ -27,6 +27,7 @@ use crate::lofted::{Loft, LoftedWheel, Strip, turned};
 use crate::profile::{Profile, Section, Side};
 use above::{SweptAbove, Varying};
 pub use cut::Cut;
+use cut::{cut_rail, cut_wheel};
 use node::{BoundPart, Part};
 use place::{candidate, contact};
 use settle::{Found, Gap, Settled, apart};
@@ -178,6 +179,15 @@ impl LoftedPair {
     /// Whether it is the wheel that varies.
     pub(super) fn turning_wheel(&self) -> bool {
         self.varying == Varying::Wheel
+    }
+
+    /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin. That is at `along`
+    /// \[mm\] of a rail's list; of a wheel, yawed by `yaw` \[rad\], −pitch \[rad\] lies lowest.
+    pub(super) fn cut(&self, [along, pitch]: [f64; 2], yaw: f64, ahead: f64) -> Cut {
+        match self.varying {
+            Varying::Rail => cut_rail(&self.loft, along + ahead),
+            Varying::Wheel => cut_wheel(&self.loft, self.radius, self.lowest(pitch), yaw, ahead),
+        }
     }
 
     /// Coordinate in a wheel's list \[mm\] of what lies lowest at a pitch \[rad\].
