@@ -10,7 +10,7 @@ use super::conicity_noise::{UNCERTAIN, Uncertainty};
 use super::curves::curves;
 use super::doubts::DoubtSet;
 use super::input::{Case, Place};
-use super::sweep_view::page_of;
+use super::sweep_view::{page_of, swept};
 use crate::error::{Error, Result};
 use crate::export::{
     CurvesMap, CurvesPanel, CurvesPicture, PageFigure, PageMap, PlottedCurve, SEPARATOR, SweepPage,
@@ -138,7 +138,8 @@ pub fn conicity_page(case: &Case, report: &ConicityReport) -> Result<SweepPage> 
         amplitudes: map.v.clone(),
         values: map.values.concat(),
     });
-    let mut page = page_of(case, wheelset(case)?, &columns, report.function("lateral_mm"), picture);
+    let shown = swept(case, wheelset(case)?, &columns, report.function("lateral_mm"));
+    let mut page = page_of(&shown, picture);
     page.map = map;
     page.figures = figures(report);
     page.findings = report.findings.clone();

@@ -101,7 +101,7 @@ pub(super) fn over(
     let lowest = Lowest::new(columns, abscissa.len());
     let sides = [("left", false), ("right", true)];
     let jumps = sides.map(|(_, right)| {
-        let places = ["rail_x_mm", "wheel_x_mm"].map(|name| lowest.values(right, name));
+        let places = ["rail_x_mm", "wheel_x_mm", "y_mm"].map(|name| lowest.values(right, name));
         jumps(&places.each_ref().map(Vec::as_slice))
     });
     let panel = |&(title, axis, column, factor): &(&str, &str, &str, f64)| {

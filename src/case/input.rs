@@ -15,10 +15,9 @@ use crate::load::{Elastic, effective_modulus};
 use crate::lofted::LoftedBody;
 use crate::measured::Record;
 use crate::numerics::bodies::Bodies;
-use crate::placement::Motion;
-use crate::placement::Pair;
+use crate::placement::{Motion, Pair, Track, Wheelset};
 use crate::profile::Side;
-use crate::search::{LoftedPair, Pose, Position, ProfilePair, TrackSide, WheelsetOnTrack};
+use crate::search::{LoftedPair, Pose, Position, ProfilePair, SideOnTrack, TrackSide, WheelsetOnTrack};
 use crate::separation::Method;
 
 /// Two prepared profiles, where they stand, what is asked of them, and what is to be written.
@@ -60,6 +59,20 @@ pub struct SideProfiles {
 }
 
 impl SideProfiles {
+    /// Prepares them for searches on a track.
+    ///
+    /// # Errors
+    /// Profiles of which no part faces the other body.
+    pub fn on_track(&self, track: Track, axle: Wheelset) -> Result<SideOnTrack> {
+        match &self.varying {
+            None => SideOnTrack::new(&self.pair, track, axle),
+            Some(body) => {
+                let pair = LoftedPair::of_pair(&self.pair, body)?;
+                Ok(SideOnTrack::lofted(Arc::new(pair), track, axle))
+            }
+        }
+    }
+
     /// Names rail and wheel, as a title: "60E1 under S1002".
     pub fn names(&self) -> String {
         format!("{} under {}", self.pair.rail().name, self.pair.wheel().name)

@@ -1,12 +1,9 @@
-//! The tables and the picture of a march.
+//! The tables of a march.
 
 use std::fmt::Write;
 
 use super::columns::Columns;
-use super::curves::over;
 use super::doubts::DoubtSet;
-use crate::error::Result;
-use crate::export::CurvesPicture;
 use crate::search::{Contact, Event, Stop};
 
 /// What a march goes along: the column of its places, and the axis of its picture.
@@ -16,28 +13,59 @@ pub struct MarchCourse {
     pub column: &'static str,
     /// Name and unit of the axis.
     pub axis: &'static str,
+    /// Decimals of the place of an event.
+    pub(super) decimals: usize,
 }
 
 /// Along the track.
-pub const ALONG: MarchCourse = MarchCourse { column: "along_mm", axis: "along the track [mm]" };
+pub const ALONG: MarchCourse = MarchCourse { column: "along_mm", axis: "along the track [mm]", decimals: 2 };
 
 /// Around the axle.
-pub const AROUND: MarchCourse = MarchCourse { column: "angle_rad", axis: "pitch of the wheelset [rad]" };
+pub const AROUND: MarchCourse =
+    MarchCourse { column: "angle_rad", axis: "pitch of the wheelset [rad]", decimals: 5 };
 
 /// First line of the table of stops: the columns of a sweep between the place and the pitch of the common tangent plane.
 pub fn march_head(course: MarchCourse) -> String {
     format!("{},{},contact_pitch_rad\n", course.column, Columns::csv_head().trim_end())
 }
 
-/// Appends the rows of a stop to the text of the table. `columns` is a buffer.
-pub fn append_stop(out: &mut String, stop: &Stop, columns: &mut Columns) {
-    columns.clear();
-    stop.rows.iter().for_each(|row| columns.push(0, row, None, DoubtSet::default()));
-    let mut text = String::new();
-    columns.append_csv(&mut text);
-    for (line, row) in text.lines().zip(&stop.rows) {
-        // Writing to a String cannot fail. 0 without a sign.
-        let _ = writeln!(out, "{},{line},{}", stop.along, 0.0 - row.contact.turn);
+/// The rows of a march's table.
+#[derive(Debug, Clone, Default)]
+pub struct MarchColumns {
+    /// Where each row stands on the course \[mm\], or \[rad\].
+    pub along: Vec<f64>,
+    /// The columns of a sweep, stops being its positions.
+    pub columns: Columns,
+    /// Pitch of the common tangent plane \[rad\].
+    pub pitch: Vec<f64>,
+}
+
+impl MarchColumns {
+    /// Appends the rows of a stop with this number.
+    pub fn push(&mut self, number: usize, stop: &Stop) {
+        for row in &stop.rows {
+            self.along.push(stop.along);
+            self.columns.push(number, row, None, DoubtSet::default());
+            // 0 without a sign.
+            self.pitch.push(0.0 - row.contact.turn);
+        }
+    }
+
+    /// Removes all rows; the room for them stays.
+    pub fn clear(&mut self) {
+        self.along.clear();
+        self.columns.clear();
+        self.pitch.clear();
+    }
+
+    /// Appends all rows as CSV, in the shortest digits that read back as the same numbers.
+    pub fn append_csv(&self, out: &mut String) {
+        let mut text = String::new();
+        self.columns.append_csv(&mut text);
+        for (row, line) in text.lines().enumerate() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{},{line},{}", self.along[row], self.pitch[row]);
+        }
     }
 }
 
@@ -80,26 +108,4 @@ pub fn append_event(out: &mut String, event: &Event) {
         let _ = if number.is_nan() { write!(out, ",") } else { write!(out, ",{number}") };
     }
     out.push('\n');
-}
-
-/// Quantities of each side's lowest contact that the picture shows: heading, axis with unit, column, factor.
-const SHOWN: [(&str, &str, &str, f64); 6] = [
-    ("Height of the centre", "z [mm]", "z_mm", 1.0),
-    ("Rolling radius", "r [mm]", "rolling_radius_mm", 1.0),
-    ("Contact on the rail", "x on the rail [mm]", "rail_x_mm", 1.0),
-    ("Contact on the wheel", "x on the wheel [mm]", "wheel_x_mm", 1.0),
-    ("Contact ahead of the axle", "y [mm]", "y_mm", 1.0),
-    ("Contact angle", "θ [°]", "contact_angle_rad", 180.0 / std::f64::consts::PI),
-];
-
-/// Makes the picture of a march from its columns over the ascending places of all its stops; `title` and `about` stand above it.
-///
-/// # Errors
-/// Places that do not ascend.
-pub fn march_curves(
-    columns: &Columns,
-    (course, places): (MarchCourse, &[f64]),
-    [title, about]: [&str; 2],
-) -> Result<CurvesPicture> {
-    over(columns, (course.axis, places), &SHOWN, (title, about))
 }

@@ -1,12 +1,35 @@
-//! What the page of a sweep shows: the usual curves, and the pair of profiles at every position.
+//! What the page of a sweep or a march shows: the usual curves, and the pair of profiles at every position.
 
 use super::columns::Columns;
 use super::curves::curves;
-use super::input::Case;
-use super::polylines::pairs;
+use super::input::{Case, Profiles};
+use super::polylines::{page_cut, pairs};
 use crate::error::Result;
-use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, SweepCurve, SweepPage, SweepPanel, SweepSide};
-use crate::search::{Position, Roll, WheelsetOnTrack};
+use crate::export::{
+    CurvesPanel, CurvesPicture, PageCut, PageEvents, PlottedCurve, SweepCurve, SweepPage, SweepPanel,
+    SweepSide,
+};
+use crate::search::{Cut, Position, Roll, TrackSide, WheelsetOnTrack};
+
+/// What the pictures of pairs of profiles show.
+const SECTION: &str = "The section is that through the lowest contact of its side; further ones lie before or behind it, so that their two \
+                       points are not in one place.";
+const SECTION_OF_ROLLER: &str = "The section is that through the axles: under yaw a contact lies before or behind it, and its two points \
+                                 are not in one place.";
+
+/// A wheelset at many positions, as pages show it.
+pub(super) struct Shown<'a> {
+    pub profiles: &'a Profiles,
+    pub system: &'a WheelsetOnTrack,
+    /// The contacts; there may be none at a position.
+    pub columns: &'a Columns,
+    /// The positions on the axis of the curves, ascending.
+    pub positions: &'a [f64],
+    /// Where the wheelset stands at a position, of bodies that vary: along the track \[mm\], and its pitch \[rad\].
+    pub stands: &'a dyn Fn(f64) -> [f64; 2],
+    /// What holds the exact numbers: "sweep".
+    pub table: &'a str,
+}
 
 /// Makes the page of a sweep from its columns, over the lateral displacements \[mm\] of all its positions; these have to ascend,
 /// and `columns` may lack those without contact. `about` stands below the names of the profiles.
@@ -22,29 +45,40 @@ pub fn sweep_page(
 ) -> Result<SweepPage> {
     // The title of the scene may name its one position.
     let picture = curves(columns, lateral, &case.profiles.right.names(), about)?;
-    Ok(page_of(case, system, columns, lateral, picture))
+    Ok(page_of(&swept(case, system, columns, lateral), picture))
+}
+
+/// Gives what the page of a sweep shows.
+pub(super) fn swept<'a>(
+    case: &'a Case,
+    system: &'a WheelsetOnTrack,
+    columns: &'a Columns,
+    positions: &'a [f64],
+) -> Shown<'a> {
+    Shown { profiles: &case.profiles, system, columns, positions, stands: &|_| [0.0; 2], table: "sweep" }
 }
 
 /// Makes the page of the panels of a picture.
-pub(super) fn page_of(
-    case: &Case,
-    system: &WheelsetOnTrack,
-    columns: &Columns,
-    lateral: &[f64],
-    picture: CurvesPicture,
-) -> SweepPage {
+pub(super) fn page_of(shown: &Shown<'_>, picture: CurvesPicture) -> SweepPage {
+    let on_rollers = shown.profiles.right.pair.roller_radius().is_some();
+    let numbers = format!(
+        "Numbers of this page are in single precision; the exact ones are in the table of the {}.",
+        shown.table
+    );
     SweepPage {
         title: picture.title,
         about: picture.about,
         version: env!("CARGO_PKG_VERSION").into(),
         abscissa: picture.abscissa,
-        lateral: lateral.to_vec(),
+        positions: shown.positions.to_vec(),
         panels: picture.quantities.into_iter().map(panel).collect(),
-        pairs: pairs(&case.profiles),
-        sides: [false, true].map(|right| side(case, system, columns, lateral, right)).into(),
+        pairs: pairs(shown.profiles),
+        sides: [false, true].map(|right| shown.side(right)).into(),
+        events: PageEvents::default(),
         figures: Vec::new(),
         map: None,
         findings: Vec::new(),
+        notes: vec![if on_rollers { SECTION_OF_ROLLER } else { SECTION }.into(), numbers],
     }
 }
 
@@ -59,33 +93,62 @@ fn panel(panel: CurvesPanel) -> SweepPanel {
     SweepPanel { title, axis: panel.axis, curves, shown: panel.shown }
 }
 
-/// Gives where the wheel of a side is at every position, and its contacts.
-fn side(case: &Case, system: &WheelsetOnTrack, columns: &Columns, lateral: &[f64], right: bool) -> SweepSide {
-    let on_track = if right { system.right() } else { system.left() };
-    let mut out = SweepSide {
-        right,
-        pair: usize::from(!right && case.profiles.left.is_some()),
-        rail: [on_track.track().rail_x(), on_track.track().rail_z()],
-        places: vec![f64::NAN; 3 * lateral.len()],
-        position: Vec::new(),
-        rail_x: Vec::new(),
-        wheel_x: Vec::new(),
-    };
-    let value = |name: &str, row: usize| columns.quantity(name).map_or(f64::NAN, |column| column[row]);
-    for row in (0..columns.rows()).filter(|&row| columns.right[row] == right) {
-        let number = columns.position[row] as usize;
-        out.position.push(number);
-        out.rail_x.push(value("rail_x_mm", row));
-        out.wheel_x.push(value("wheel_x_mm", row));
-        let Some(place) = out.places.get_mut(3 * number..3 * number + 3) else { continue };
-        let roll = value("roll_rad", row);
-        let (lateral, yaw) = (value("lateral_mm", row), value("yaw_rad", row));
-        let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
-        let section = system.section(right, &position, roll, value("z_mm", row));
-        let origin = section.translation.vector;
-        place.copy_from_slice(&[origin.x, origin.y, section.rotation.angle()]);
+impl Shown<'_> {
+    /// Gives where the wheel of a side is at every position, what varies there, and the contacts.
+    fn side(&self, right: bool) -> SweepSide {
+        let on_track = if right { self.system.right() } else { self.system.left() };
+        let mut out = SweepSide {
+            right,
+            pair: usize::from(!right && self.profiles.left.is_some()),
+            rail: [on_track.track().rail_x(), on_track.track().rail_z()],
+            places: vec![f64::NAN; 5 * self.positions.len()],
+            rails: Vec::new(),
+            wheels: Vec::new(),
+            position: Vec::new(),
+            rail_x: Vec::new(),
+            wheel_x: Vec::new(),
+            angle: Vec::new(),
+            gap: Vec::new(),
+        };
+        for row in (0..self.columns.rows()).filter(|&row| self.columns.right[row] == right) {
+            let value = |name: &str| self.columns.quantity(name).map_or(f64::NAN, |column| column[row]);
+            let number = self.columns.position[row] as usize;
+            out.position.push(number);
+            out.rail_x.push(value("rail_x_mm"));
+            out.wheel_x.push(value("wheel_x_mm"));
+            out.angle.push(value("contact_angle_rad"));
+            out.gap.push(value("gap_mm"));
+            if self.columns.contact[row] == 1 && number < self.positions.len() {
+                self.place(&mut out, number, &value);
+            }
+        }
+        out
     }
-    out
+
+    /// Puts down where a wheel is at a position, and what varies there; `value` gives numbers of its lowest contact.
+    fn place(&self, out: &mut SweepSide, number: usize, value: &dyn Fn(&str) -> f64) {
+        let (lateral, yaw, roll) = (value("lateral_mm"), value("yaw_rad"), value("roll_rad"));
+        let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
+        let section = self.system.section(out.right, &position, roll, value("z_mm"));
+        let side = if out.right { TrackSide::Right } else { TrackSide::Left };
+        let [yaw, ahead] = match self.profiles.on(Some(side)).pair.roller_radius() {
+            Some(_) => [0.0; 2],
+            None => [if out.right { yaw } else { -yaw }, value("y_mm")],
+        };
+        let origin = section.translation.vector;
+        let place = [origin.x, origin.y, section.rotation.angle(), yaw, ahead];
+        out.places[5 * number..5 * number + 5].copy_from_slice(&place);
+        let [along, pitch] = (self.stands)(self.positions[number]);
+        let stands = [self.system.along(out.right, &position, along), pitch];
+        let on_track = if out.right { self.system.right() } else { self.system.left() };
+        let (of, pieces) = match on_track.cut(stands, yaw, ahead) {
+            Some(Cut::Rail(pieces)) => (&mut out.rails, pieces),
+            Some(Cut::Wheel(pieces)) => (&mut out.wheels, pieces),
+            None => return,
+        };
+        of.resize(self.positions.len(), PageCut(Vec::new()));
+        of[number] = page_cut(&pieces);
+    }
 }
 
 #[cfg(test)]
@@ -93,43 +156,54 @@ mod tests {
     use super::*;
     use crate::case::DoubtSet;
     use crate::search::{ONE_CONTACT, ParallelSweep, Selection};
-    use nalgebra::Point2;
 
-    /// The example's wheelset: the page puts both bodies' points of contact in one place.
+    /// A point of a wheel's profile in the axes of the rail's, in the plane that a page shows: what its script computes.
+    fn in_section(side: &SweepSide, number: usize, radius: f64, [x, z]: [f64; 2]) -> [f64; 2] {
+        let [dx, dz, angle, yaw, ahead] = [0, 1, 2, 3, 4].map(|k| side.places[5 * number + k]);
+        let along = (ahead - x * yaw.sin()) / yaw.cos();
+        let across = x * yaw.cos() - along * yaw.sin();
+        let up = radius - ((radius - z).powi(2) - along * along).sqrt();
+        [dx + across * angle.cos() - up * angle.sin(), dz + across * angle.sin() + up * angle.cos()]
+    }
+
+    /// The example's wheelset, with and without yaw: the page puts both bodies' points of contact in one place.
     #[test]
     fn the_pair_of_profiles_touches_where_the_table_says() {
-        let text = include_str!("../../examples/scenes/wheelset.toml").replace("yaw = 0.002", "yaw = 0.0");
-        let scene = crate::scene::parse(&text, false).unwrap();
+        let text = include_str!("../../examples/scenes/wheelset.toml");
+        let scene = crate::scene::parse(text, false).unwrap();
         let case = crate::scene::resolve(&scene, ".".as_ref(), "wheelset").unwrap();
         let crate::case::Place::Wheelset { system, .. } = &case.standing.place else { panic!("no wheelset") };
-        let lateral = [-6.0, 0.0, 3.0, 7.0];
-        let positions = lateral.map(|lateral| Position { lateral, yaw: 0.0, roll: Roll::Solve });
-        let selection = Selection { within: 0.0, apart: ONE_CONTACT };
-        let mut columns = Columns::default();
-        let sweep = ParallelSweep { system, selection, conicity: None, positions: &positions };
-        let rows = |chunk: &mut Columns, position, rows: &[_]| {
-            rows.iter().for_each(|row| chunk.push(position, row, None, DoubtSet::default()));
-            Ok(())
-        };
-        let all = |_, chunks: Vec<Columns>| {
-            chunks.iter().for_each(|chunk| columns.extend(chunk));
-            Ok(true)
-        };
-        sweep.blocks(rows, all).unwrap();
-        let page = sweep_page(&case, system, &columns, &lateral, "").unwrap();
-        let pair = &case.profiles.right.pair;
-        for side in &page.sides {
-            assert!(side.position.len() >= lateral.len());
-            for (k, &number) in side.position.iter().enumerate() {
-                let height = |profile: &crate::Profile, body: usize, x: f64| {
-                    let [rail, wheel] = pair.sections();
-                    [rail, wheel][body].point(profile, x).unwrap().station.z
-                };
-                let [x, z, angle] = [0, 1, 2].map(|j| side.places[3 * number + j]);
-                let place = nalgebra::Isometry2::new(nalgebra::Vector2::new(x, z), angle);
-                let wheel = Point2::new(side.wheel_x[k], height(pair.wheel(), 1, side.wheel_x[k]));
-                let rail = Point2::new(side.rail_x[k], height(pair.rail(), 0, side.rail_x[k]));
-                assert!((place * wheel - rail).norm() < 1e-9, "{number}: {} {rail}", place * wheel);
+        for yaw in [0.0, 0.02] {
+            let lateral = [-6.0, 0.0, 3.0, 7.0];
+            let positions = lateral.map(|lateral| Position { lateral, yaw, roll: Roll::Solve });
+            let selection = Selection { within: 0.0, apart: ONE_CONTACT };
+            let mut columns = Columns::default();
+            let sweep = ParallelSweep { system, selection, conicity: None, positions: &positions };
+            let rows = |chunk: &mut Columns, position, rows: &[_]| {
+                rows.iter().for_each(|row| chunk.push(position, row, None, DoubtSet::default()));
+                Ok(())
+            };
+            let all = |_, chunks: Vec<Columns>| {
+                chunks.iter().for_each(|chunk| columns.extend(chunk));
+                Ok(true)
+            };
+            sweep.blocks(rows, all).unwrap();
+            let page = sweep_page(&case, system, &columns, &lateral, "").unwrap();
+            let pair = &case.profiles.right.pair;
+            for side in &page.sides {
+                assert!(
+                    side.position.len() >= lateral.len() && side.rails.is_empty() && side.wheels.is_empty()
+                );
+                for (k, &number) in side.position.iter().enumerate() {
+                    let height = |profile: &crate::Profile, body: usize, x: f64| {
+                        let [rail, wheel] = pair.sections();
+                        [rail, wheel][body].point(profile, x).unwrap().station.z
+                    };
+                    let wheel = [side.wheel_x[k], height(pair.wheel(), 1, side.wheel_x[k])];
+                    let [x, z] = in_section(side, number, pair.wheel_radius(), wheel);
+                    let rail = [side.rail_x[k], height(pair.rail(), 0, side.rail_x[k])];
+                    assert!((x - rail[0]).hypot(z - rail[1]) < 1e-9, "{yaw}, {number}: {x} {z} {rail:?}");
+                }
             }
         }
     }

@@ -31,9 +31,9 @@ pub use deck::{
 };
 pub use gmsh::patch_msh;
 pub use html::{
-    FleetDistribution, FleetHeat, FleetPage, FleetWorst, MeasuredPage, MeasuresPage, PageConformal,
-    PageFigure, PageFrame, PageLoop, PageMap, PagePair, PagePressure, PageProfile, SweepCurve, SweepPage,
-    SweepPanel, SweepSide, ViewContact, ViewPage,
+    FleetDistribution, FleetHeat, FleetPage, FleetWorst, MeasuredPage, MeasuresPage, PageConformal, PageCut,
+    PageEvent, PageEvents, PageFigure, PageFrame, PageLoop, PageMap, PagePair, PagePressure, PageProfile,
+    SweepCurve, SweepPage, SweepPanel, SweepSide, ViewContact, ViewPage,
 };
 pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;

@@ -152,12 +152,14 @@ impl LoftedWheel {
         self
     }
 
-    /// Returns the section that is lowest where the wheel is turned by a pitch \[rad\], + forward at the bottom.
+    /// Returns the section that is lowest where the wheel is turned by a pitch \[rad\], + forward at the bottom; without one that where the
+    /// surface begins.
     ///
     /// # Errors
     /// A place where the sections leave the surface undefined.
-    pub fn lowest(&self, pitch: f64) -> Result<Profile> {
-        let angle = turned(-pitch, self.middle);
+    pub fn lowest(&self, pitch: Option<f64>) -> Result<Profile> {
+        let first = self.loft.strips.first().map_or(0.0, |strip| strip.reach()[0] / self.radius);
+        let angle = pitch.map_or(first, |pitch| turned(-pitch, self.middle));
         let nowhere = || {
             let found = format!("a gap in the surface at {angle} rad");
             Error::new("pitch", found, "a place that the slices join to a surface", "choose another pitch")

@@ -13,22 +13,33 @@ use super::profiles::{
     turned_and_shifted, wheel_of, wheel_radius,
 };
 use super::standing::{position, rails, wheels, within};
-use crate::case::usual;
+use crate::case::{Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};
 use crate::files::read_bytes;
-use crate::lofted::{Flat, Loft, LoftedWheel, Slice};
+use crate::lofted::{Flat, Loft, LoftedBody, LoftedWheel, Slice, section};
 use crate::measured::{self, Measured, SliceList, listed_body};
+use crate::numerics::bodies::Bodies;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Profile, Side, trace};
-use crate::search::{LoftedPair, March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
+use crate::search::{March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
+
+/// The march of a scene.
+#[derive(Debug, Clone)]
+pub struct SceneMarch {
+    /// Ready to be computed.
+    pub march: March,
+    /// The profiles of both sides: of a body that varies a section of it, or the profile before it was made to vary.
+    pub profiles: Profiles,
+    /// What the lists leave undefined, and what is doubtful.
+    pub warnings: Vec<String>,
+}
 
 /// Resolves a scene into a march along its rails, at least one of which is a list of slices without `along`, or around its wheels, at
 /// least one of which has a flat, is out of round or is a list of slices without `angle`. Paths in the scene are relative to `folder`.
-/// Also returns what the lists leave undefined.
 ///
 /// # Errors
 /// Anything that is wrong; the error names the key.
-pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
+pub fn march(scene: &Scene, folder: &Path) -> Result<SceneMarch> {
     let (Some(track), Some(wheelset)) = (&scene.track, &scene.wheelset) else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a march moves a wheelset along its track"));
@@ -40,12 +51,14 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
     let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
     let warnings = doubts_of_keys(scene).iter().map(ToString::to_string).collect();
     let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings };
-    let right = sides.side(true, &mut lists)?;
-    let system = if scene.left.is_none() && scene.right.is_none() {
-        WheelsetOnTrack::symmetrical(right)
+    let (own, right) = sides.side(true, &mut lists)?;
+    let (system, left) = if scene.left.is_none() && scene.right.is_none() {
+        (WheelsetOnTrack::symmetrical(right), None)
     } else {
-        WheelsetOnTrack::of_sides(sides.side(false, &mut lists)?, right)
+        let (other, left) = sides.side(false, &mut lists)?;
+        (WheelsetOnTrack::of_sides(left, right), Some(other))
     };
+    let profiles = Profiles { right: own, left };
     let [from, to] = lists.reach;
     if from == f64::NEG_INFINITY && !system.turning() {
         let expected = "a rail that varies: a list .slcs of slices without `along`; or such a wheel";
@@ -61,7 +74,8 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<(March, Vec<String>)> {
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }
     let selection = Selection { within, apart: ONE_CONTACT };
-    Ok((March { system, position, selection, reach: lists.reach, pitch }, lists.warnings))
+    let march = March { system, position, selection, reach: lists.reach, pitch };
+    Ok(SceneMarch { march, profiles, warnings: lists.warnings })
 }
 
 /// What both sides are made of.
@@ -74,7 +88,7 @@ struct Sides<'a> {
 
 impl Sides<'_> {
     /// Makes one side, whose rail or wheel varies, or neither.
-    fn side(&self, right: bool, lists: &mut Lists) -> Result<SideOnTrack> {
+    fn side(&self, right: bool, lists: &mut Lists) -> Result<(SideProfiles, SideOnTrack)> {
         let Self { scene, folder, rails, wheels } = *self;
         let (name, own) = if right { ("right", &scene.right) } else { ("left", &scene.left) };
         let own = own.as_ref();
@@ -84,7 +98,7 @@ impl Sides<'_> {
             .map(|(body, own)| if own.is_some() { format!("{name}: {body}") } else { body.to_owned() });
         let (rail, given) = (rail.unwrap_or(&scene.rail), Given::new());
         let data = own_wheel.unwrap_or(&scene.wheel);
-        let Wheel { resolved, radius, varying } = wheel(scene, data, &wheel_key, (folder, &given))?;
+        let Wheel { resolved, radius, varying } = wheel(scene, (data, &wheel_key), None, (folder, &given))?;
         lists.take_wheel(&wheel_key, (&resolved, radius), varying.as_ref());
         let axle = Wheelset::new(wheels, radius)?;
         let deviation = own.and_then(|side| side.deviation).unwrap_or_default();
@@ -98,12 +112,8 @@ impl Sides<'_> {
         let Some(list) = list_of(rail, Side::Rail) else {
             let rail = rail_of(rail, &rail_key, (folder, &given))?.profile;
             let track = moved(Track::new(&rail, rails)?)?;
-            return match varying {
-                None => SideOnTrack::new(&Pair::new(rail, resolved.profile, radius)?, track, axle),
-                Some(wheel) => {
-                    Ok(SideOnTrack::lofted(Arc::new(LoftedPair::turning(&wheel, &rail)?), track, axle))
-                }
-            };
+            let varying = varying.map(|wheel| LoftedBody::Wheel(Arc::new(wheel)));
+            return on_track((Pair::new(rail, resolved.profile, radius)?, varying), track, axle);
         };
         let RailDistance::Spacing(spacing) = rails else {
             let expected = "`spacing` of the profile origins: rails that vary have no one gauge point";
@@ -114,14 +124,28 @@ impl Sides<'_> {
         }
         let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
         lists.take(&loft, &rail_key);
-        let pair = LoftedPair::new(Arc::new(loft), &resolved.profile, radius)?;
-        Ok(SideOnTrack::lofted(Arc::new(pair), moved(Track::between_origins(spacing)?)?, axle))
+        let first = loft.strips.first().map_or(0.0, |strip| strip.reach()[0]);
+        let section = section(&loft, loft.widest(first).unwrap_or(0), first)?;
+        let varying = Some(LoftedBody::Rail(Arc::new(loft)));
+        let track = moved(Track::between_origins(spacing)?)?;
+        on_track((Pair::new(section, resolved.profile, radius)?, varying), track, axle)
     }
+}
+
+/// Puts rail and wheel of one side, one of which may vary, on the track.
+fn on_track(
+    (pair, varying): (Pair, Option<LoftedBody>),
+    track: Track,
+    axle: Wheelset,
+) -> Result<(SideProfiles, SideOnTrack)> {
+    let profiles = SideProfiles { pair, measured: Bodies::default(), varying };
+    let side = profiles.on_track(track, axle)?;
+    Ok((profiles, side))
 }
 
 /// A wheel, which may vary around its axle.
 pub(super) struct Wheel {
-    /// Its profile; of a list of slices the lowest section.
+    /// Its profile; of a list of slices the lowest section, or any.
     pub resolved: Resolved,
     /// Nominal rolling radius \[mm\].
     pub radius: f64,
@@ -129,16 +153,21 @@ pub(super) struct Wheel {
     pub varying: Option<LoftedWheel>,
 }
 
-/// Makes the wheel of one side; `key` is its place in the scene.
+/// Makes the wheel of one side, turned by a pitch \[rad\], or by any; `key` is its place in the scene.
 ///
 /// # Errors
 /// Anything that is wrong with its profile, its list, its flat or its radii.
-pub(super) fn wheel(scene: &Scene, data: &ProfileData, key: &str, sources: Sources<'_>) -> Result<Wheel> {
+pub(super) fn wheel(
+    scene: &Scene,
+    (data, key): (&ProfileData, &str),
+    pitch: Option<f64>,
+    sources: Sources<'_>,
+) -> Result<Wheel> {
     if let Some(list) = list_of(data, Side::Wheel) {
         let radius = wheel_radius(scene, data, key)?;
         let within = |error: Error| error.within(key);
         let wheel = wheel_of_slices(data, &sources.0.join(list), radius).map_err(within)?;
-        let mut profile = wheel.lowest(scene.pitch()?).map_err(within)?;
+        let mut profile = wheel.lowest(pitch).map_err(within)?;
         let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
         profile.name = format!("{name}, {}", profile.name);
         let resolved = Resolved { profile, measured: None };

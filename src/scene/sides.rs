@@ -52,7 +52,8 @@ fn of_side(
         Some((section, _)) => Resolved { profile: section.clone(), measured: None },
         None => rail_of(data[0], places[0], sources)?,
     };
-    let Wheel { resolved, radius, varying } = wheel(scene, data[1], places[1], sources)?;
+    let Wheel { resolved, radius, varying } =
+        wheel(scene, (data[1], places[1]), Some(scene.pitch()?), sources)?;
     let varying = match (loft, varying) {
         (Some(_), Some(_)) => return Err(both_vary(places[1])),
         (Some((_, loft)), None) => Some(LoftedBody::Rail(loft)),

@@ -118,12 +118,13 @@ pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
 
 /// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
 fn side(
-    SideProfiles { pair, varying, .. }: &mut SideProfiles,
+    profiles: &mut SideProfiles,
     (rails, wheels): (RailDistance, WheelDistance),
     deviation: DeviationData,
     sign: f64,
 ) -> Result<SideOnTrack> {
     let within = |error: Error| error.within("deviation");
+    let SideProfiles { pair, varying, .. } = &mut *profiles;
     let axle = Wheelset::new(wheels, pair.wheel_radius())?;
     let nominal = match (&varying, rails) {
         (None | Some(LoftedBody::Wheel(_)), _) => Track::new(pair.rail(), rails)?,
@@ -144,10 +145,7 @@ fn side(
         let rail = pair.rail().clone().rotated(UnitComplex::new(-sign * roll));
         *pair = pair.with_rail(rail)?;
     }
-    match varying {
-        None => SideOnTrack::new(pair, track, axle),
-        Some(body) => Ok(SideOnTrack::lofted(Arc::new(LoftedPair::of_pair(pair, body)?), track, axle)),
-    }
+    profiles.on_track(track, axle)
 }
 
 fn single(

@@ -54,7 +54,7 @@ pub use geometry::{
     AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, gauge, geometry_over, key_figures,
     nonlinearity,
 };
-pub use lofted::LoftedPair;
+pub use lofted::{Cut, LoftedPair};
 pub use march::{Event, EventKind, March, Stop};
 pub use over_rail::Work;
 pub use parallel::{ParallelSweep, conicity_over, free};

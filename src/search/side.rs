@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
-use super::lofted::{LoftedPair, LoftedSearch};
+use super::lofted::{Cut, LoftedPair, LoftedSearch};
 use super::over_rail::Work;
 use super::touch::{ContactSearch, ProfilePair, Selection, Touch};
 use crate::error::{Error, Result};
@@ -43,6 +43,17 @@ impl SideOnTrack {
     /// Returns the position of the wheel on its axle.
     pub fn wheelset(&self) -> &Wheelset {
         &self.wheelset
+    }
+
+    /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin, as
+    /// [`Contact::y`](super::Contact::y) counts. That origin is at `along` \[mm\] of a rail's list
+    /// ([`WheelsetOnTrack::along`](super::WheelsetOnTrack::along)); of a wheel −pitch \[rad\] is lowest, and `yaw` \[rad\] turns it with the
+    /// field side ahead. `None` of bodies of one profile; no pieces where the plane meets no surface.
+    pub fn cut(&self, stands: [f64; 2], yaw: f64, ahead: f64) -> Option<Cut> {
+        match &self.pair {
+            SidePair::Swept(_) => None,
+            SidePair::Lofted(pair) => Some(pair.cut(stands, yaw, ahead)),
+        }
     }
 }
 

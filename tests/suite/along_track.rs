@@ -126,7 +126,7 @@ fn equal_slices(wheel: Profile) -> Result<()> {
 /// The crossing of the examples, and its march.
 fn crossing() -> March {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
-    scene::march(&scene::load(&folder.join("crossing.toml")).unwrap(), &folder).unwrap().0
+    scene::march(&scene::load(&folder.join("crossing.toml")).unwrap(), &folder).unwrap().march
 }
 
 /// Least vertical gap of a wheel over the points of a surface: every fourth part of a millimetre along the track, and two points a
@@ -291,7 +291,7 @@ pub(super) fn cases() -> Vec<Value> {
 /// A march of a case over the profiles of a copy of CONTACT.
 fn march_of(profiles: &Path, case: &Value, surface: &str) -> Result<March> {
     let scene: Scene = scene::parse(&scene_of(case, surface, ""), false)?;
-    scene::march(&scene, profiles).map(|(march, _)| march)
+    scene::march(&scene, profiles).map(|found| found.march)
 }
 
 /// The scene of a case, with more keys of [wheelset].
@@ -390,10 +390,10 @@ fn what_is_doubtful_is_warned_of() {
     let text = std::fs::read_to_string(own.join("crossing.toml")).unwrap();
     let text =
         text.replace("radius = 460.0", "radius = 46.0").replace("lateral = 0.0", "lateral = 0.0\nyaw = 0.3");
-    let (_, warnings) = scene::march(&scene::parse(&text, false).unwrap(), folder.path()).unwrap();
+    let warnings = scene::march(&scene::parse(&text, false).unwrap(), folder.path()).unwrap().warnings;
     for part in ["wheelset: yaw", "wheel: radius", "an approximating spline"] {
         assert!(warnings.iter().any(|warning| warning.contains(part)), "{part}: {warnings:?}");
     }
-    let (_, warnings) = scene::march(&scene::load(&own.join("crossing.toml")).unwrap(), &own).unwrap();
+    let warnings = scene::march(&scene::load(&own.join("crossing.toml")).unwrap(), &own).unwrap().warnings;
     assert!(warnings.is_empty(), "{warnings:?}");
 }

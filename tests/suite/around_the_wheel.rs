@@ -231,7 +231,7 @@ fn no_place_of_a_wheel_is_lower_than_first_touch() -> Result<()> {
 
 /// A march of a scene of text, in a folder.
 fn scene_of(text: &str, folder: &Path) -> Result<(March, Vec<String>)> {
-    scene::march(&scene::parse(text, false)?, folder)
+    scene::march(&scene::parse(text, false)?, folder).map(|found| (found.march, found.warnings))
 }
 
 const REST: &str = "[rail]\nprofile = \"60E1\"\n[track]\nspacing = 1500.0\n[wheelset]\nspacing = 1500.0\nroll = \"neglect\"\n";

@@ -18,6 +18,7 @@ mod conformal;
 mod conformal_brute;
 mod conicity;
 mod continuity;
+mod cuts;
 mod doubts;
 mod flange_backs;
 mod flood_fill;

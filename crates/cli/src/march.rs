@@ -1,5 +1,5 @@
 //! `wheelrail march`: writes the contact geometry of a wheelset at many places along rails that vary, or as wheels that vary turn, and
-//! what happens in between.
+//! what happens in between; draws it as a picture and as a page.
 
 use std::path::PathBuf;
 
@@ -8,12 +8,12 @@ use super::progress::Progress;
 use super::range::{range, range_in};
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
-    ALONG, AROUND, Columns, DoubtSet, MOST_DRAWN, MarchCourse, append_event, append_stop, events_head,
-    march_curves, march_head,
+    ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, append_event,
+    events_head, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
-use wheelrail::scene::{self, Scene};
+use wheelrail::scene::{self, Scene, SceneMarch};
 use wheelrail::search::{Event, Stop};
 
 /// The scene, the places, and the outputs.
@@ -33,6 +33,9 @@ pub(super) struct MarchArguments {
     /// Picture of the usual curves along the march, in addition: .svg or .png.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
+    /// Page for a browser, in addition: the same curves over a slider, with the sections of wheels and rails there, and the events.
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
 }
 
 /// Where a march goes.
@@ -62,6 +65,7 @@ struct MarchOutputs {
     table: Option<NewFile>,
     events: Option<NewFile>,
     picture: Option<(PictureFormat, NewFile)>,
+    html: Option<NewFile>,
 }
 
 impl MarchOutputs {
@@ -69,28 +73,106 @@ impl MarchOutputs {
     fn create(arguments: &MarchArguments, scene: &Scene) -> Result<Self> {
         let picture = arguments.picture.as_deref();
         let format = picture.map(|file| PictureFormat::of_file("--picture", file)).transpose()?;
-        let files =
-            [("--out", &arguments.out), ("--events", &arguments.events), ("--picture", &arguments.picture)];
+        let files = [
+            ("--out", &arguments.out),
+            ("--events", &arguments.events),
+            ("--picture", &arguments.picture),
+            ("--html", &arguments.html),
+        ];
         refuse_files(&arguments.scene, scene, None, &files)?;
         Ok(Self {
             table: arguments.out.as_deref().map(NewFile::create).transpose()?,
             events: arguments.events.as_deref().map(NewFile::create).transpose()?,
             picture: format.zip(picture.map(NewFile::create).transpose()?),
+            html: arguments.html.as_deref().map(NewFile::create).transpose()?,
         })
     }
 
     /// Puts text into the table, or to stdout. Returns whether anybody still reads.
     fn put(&mut self, text: &str) -> Result<bool> {
         match &mut self.table {
-            None => Ok(print_to_reader(text)? || self.events.is_some() || self.picture.is_some()),
+            None => Ok(print_to_reader(text)? || self.events.is_some() || self.draws()),
             Some(file) => file.put(text.as_bytes()).map(|()| true),
         }
     }
 
+    /// Tells whether the march is drawn.
+    fn draws(&self) -> bool {
+        self.picture.is_some() || self.html.is_some()
+    }
+
+    /// Puts what is drawn into its files.
+    fn draw(&mut self, drawn: &DrawnMarch<'_>, events: &ListedEvents, progress: &Progress) -> Result<()> {
+        if let Some((format, file)) = &mut self.picture {
+            progress.at("picture");
+            file.put(&format.bytes(drawn.picture()?.svg())?)?;
+        }
+        if let Some(file) = &mut self.html {
+            progress.at("page");
+            file.put(&drawn.page(events)?.html())?;
+        }
+        Ok(())
+    }
+
     fn commit(self) -> Result<()> {
         self.picture.map_or(Ok(()), |(_, file)| file.commit())?;
+        self.html.map_or(Ok(()), NewFile::commit)?;
         self.events.map_or(Ok(()), NewFile::commit)?;
         self.table.map_or(Ok(()), NewFile::commit)
+    }
+}
+
+/// What a march has come to.
+struct Marched {
+    outputs: MarchOutputs,
+    /// Number of stops, and the distance between those that are drawn.
+    all: usize,
+    stride: usize,
+    done: usize,
+    /// Stops without contact.
+    without: usize,
+    /// The rows of some stops.
+    rows: MarchColumns,
+    /// The rows of the stops that are drawn, which are numbered among themselves.
+    drawn: MarchColumns,
+    events: ListedEvents,
+}
+
+impl Marched {
+    /// Begins the tables.
+    fn new(mut outputs: MarchOutputs, course: MarchCourse, all: usize) -> Result<Self> {
+        outputs.put(&march_head(course))?;
+        if let Some(file) = &mut outputs.events {
+            file.put(events_head(course).as_bytes())?;
+        }
+        let (rows, drawn, events) = Default::default();
+        let stride = all.div_ceil(MOST_DRAWN).max(1);
+        Ok(Self { outputs, all, stride, done: 0, without: 0, rows, drawn, events })
+    }
+
+    /// Takes the next stops, and the events up to them. Returns whether more are wanted.
+    fn take(&mut self, stops: &[Stop], events: &[Event], progress: &Progress) -> Result<bool> {
+        let (mut table, mut told) = (String::new(), String::new());
+        self.rows.clear();
+        for stop in stops {
+            self.rows.push(self.done, stop);
+            self.without += usize::from(stop.rows.is_empty());
+            if self.outputs.draws() && self.done.is_multiple_of(self.stride) {
+                self.drawn.push(self.done / self.stride, stop);
+            }
+            self.done += 1;
+        }
+        self.rows.append_csv(&mut table);
+        for event in events {
+            append_event(&mut told, event);
+            self.events.push(event);
+        }
+        if let Some(file) = &mut self.outputs.events {
+            file.put(told.as_bytes())?;
+        }
+        let step = format!("{} of {} places", self.done, self.all);
+        progress.share(step, self.done as f64 / self.all as f64);
+        self.outputs.put(&table)
     }
 }
 
@@ -100,50 +182,25 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
     let (course, places) = arguments.places.read()?;
-    let mut outputs = MarchOutputs::create(arguments, &scene)?;
-    let (march, warnings) =
+    let outputs = MarchOutputs::create(arguments, &scene)?;
+    let SceneMarch { march, profiles, warnings } =
         scene::march(&scene, folder_of(path)).map_err(|error| error.within(path.display()))?;
     for warning in warnings.into_iter().chain(unused(&scene)) {
         complain(&format!("warning: {warning}"));
     }
-    let stride = places.len().div_ceil(MOST_DRAWN).max(1);
-    let (mut drawn, mut columns, mut done, mut without) =
-        (Columns::default(), Columns::default(), 0_usize, 0);
-    outputs.put(&march_head(course))?;
-    if let Some(file) = &mut outputs.events {
-        file.put(events_head(course).as_bytes())?;
-    }
+    let mut marched = Marched::new(outputs, course, places.len())?;
     progress.at(format!("0 of {} places", places.len()));
-    let sink = |stops: &[Stop], events: &[Event]| {
-        let (mut table, mut told) = (String::new(), String::new());
-        for stop in stops {
-            append_stop(&mut table, stop, &mut columns);
-            without += usize::from(stop.rows.is_empty());
-            if done.is_multiple_of(stride) {
-                stop.rows.iter().for_each(|row| drawn.push(done / stride, row, None, DoubtSet::default()));
-            }
-            done += 1;
-        }
-        events.iter().for_each(|event| append_event(&mut told, event));
-        if let Some(file) = &mut outputs.events {
-            file.put(told.as_bytes())?;
-        }
-        progress.share(format!("{done} of {} places", places.len()), done as f64 / places.len() as f64);
-        outputs.put(&table)
-    };
+    let sink = |stops: &[Stop], events: &[Event]| marched.take(stops, events, &progress);
     if course == AROUND { march.turns(&places, sink) } else { march.blocks(&places, sink) }?;
-    if let Some((format, file)) = &mut outputs.picture {
-        progress.at("picture");
-        let shown: Vec<f64> = places.iter().copied().step_by(stride).collect();
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let about = format!(
-            "{}; lowest contact of each side, in its own profile axes",
-            counted(places.len(), "place")
-        );
-        let picture =
-            march_curves(&drawn, (course, &shown), [scene.title.as_deref().unwrap_or(&name), &about])?;
-        file.put(&format.bytes(picture.svg())?)?;
-    }
+    let Marched { mut outputs, stride, without, drawn, events, .. } = marched;
+    let shown: Vec<f64> = places.iter().copied().step_by(stride).collect();
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let number = counted(places.len(), "place");
+    let about = format!("{number}; lowest contact of each side, in its own profile axes");
+    let headings = [scene.title.as_deref().unwrap_or(&name), &about];
+    let drawn =
+        DrawnMarch { march: &march, profiles: &profiles, course, columns: &drawn, places: &shown, headings };
+    outputs.draw(&drawn, &events, &progress)?;
     outputs.commit()?;
     drop(progress);
     if without > 0 {

@@ -6,8 +6,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use wheelrail::Error;
-use wheelrail::case::{ALONG, AROUND, Columns, DoubtSet, EVENT_NUMBERS, event_numbers};
-use wheelrail::scene;
+use wheelrail::case::{ALONG, AROUND, EVENT_NUMBERS, MarchColumns, event_numbers};
+use wheelrail::scene::{self, SceneMarch};
 use wheelrail::search::{Event, Stop};
 
 use crate::arrays::values;
@@ -69,19 +69,14 @@ pub(crate) fn march<'py>(
             return Err(exception(Error::new("march", found, "one of the two", "give places or pitches")));
         }
     };
-    let (places, pitches, columns, events, warnings) = watched(py, progress.as_ref(), |watch| {
+    let (rows, events, warnings) = watched(py, progress.as_ref(), |watch| {
         let scene = scene::load(&path)?;
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
-        let (march, warnings) = scene::march(&scene, folder)?;
-        let (mut places, mut pitches) = (Vec::new(), Vec::new());
-        let (mut columns, mut events, mut done) = (Columns::default(), Vec::new(), 0);
+        let SceneMarch { march, warnings, .. } = scene::march(&scene, folder)?;
+        let (mut rows, mut events, mut done) = (MarchColumns::default(), Vec::new(), 0);
         let sink = |stops: &[Stop], found: &[Event]| {
             for stop in stops {
-                for row in &stop.rows {
-                    columns.push(done, row, None, DoubtSet::default());
-                    places.push(stop.along);
-                    pitches.push(0.0 - row.contact.turn);
-                }
+                rows.push(done, stop);
                 done += 1;
             }
             events.extend_from_slice(found);
@@ -89,14 +84,15 @@ pub(crate) fn march<'py>(
             watch.go_on().map(|()| true)
         };
         if course == AROUND { march.turns(&along, sink) } else { march.blocks(&along, sink) }?;
-        Ok((places, pitches, columns, events, warnings))
+        Ok((rows, events, warnings))
     })?;
     for warning in &warnings {
         say(py, "march", warning, "see the scene and its lists of slices")?;
     }
+    let MarchColumns { along, columns, pitch } = rows;
     let rows = arrays_of(py, columns)?;
-    rows.set_item(course.column, PyArray1::from_vec(py, places))?;
-    rows.set_item("contact_pitch_rad", PyArray1::from_vec(py, pitches))?;
+    rows.set_item(course.column, PyArray1::from_vec(py, along))?;
+    rows.set_item("contact_pitch_rad", PyArray1::from_vec(py, pitch))?;
     let told = PyDict::new(py);
     told.set_item(course.column, PyArray1::from_iter(py, events.iter().map(|event| event.along)))?;
     told.set_item("side", PyList::new(py, events.iter().map(|event| event.side.name()))?)?;

@@ -12,7 +12,9 @@ mod view;
 
 pub use fleet::{FleetDistribution, FleetHeat, FleetPage, FleetWorst};
 pub use measure::{MeasuredPage, MeasuresPage};
-pub use sweep::{PageFigure, PageMap, SweepCurve, SweepPage, SweepPanel, SweepSide};
+pub use sweep::{
+    PageCut, PageEvent, PageEvents, PageFigure, PageMap, SweepCurve, SweepPage, SweepPanel, SweepSide,
+};
 pub use view::{
     PageConformal, PageFrame, PageLoop, PagePair, PagePressure, PageProfile, ViewContact, ViewPage,
 };

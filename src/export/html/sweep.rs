@@ -1,4 +1,4 @@
-//! The page of a sweep: curves over the lateral displacement, and the pair of profiles at the position under the pointer.
+//! The page of a sweep or a march: curves over its positions, and the pair of profiles at the position under the pointer.
 
 use serde::Serialize;
 
@@ -34,6 +34,14 @@ pub struct SweepPanel {
     pub shown: Option<[f64; 2]>,
 }
 
+/// A section in pieces.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageCut(
+    /// x, z \[mm\] of every point in turn; NaN between two pieces.
+    #[serde(serialize_with = "floats")]
+    pub Vec<f64>,
+);
+
 /// Rail and wheel of one side at all positions, in the axes of the rail's profile: x to the field side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepSide {
@@ -43,10 +51,15 @@ pub struct SweepSide {
     pub pair: usize,
     /// The rail profile's origin \[mm\]: distance from the middle of the track, and height over the top of rail.
     pub rail: [f64; 2],
-    /// Of every position in turn x, z \[mm\] and angle \[rad\], counter-clockwise, of the wheel profile's axes; NaN where the
-    /// wheel touches nothing.
+    /// Of every position in turn x, z \[mm\] and angle \[rad\], counter-clockwise, of the wheel profile's axes, the wheel's yaw \[rad\]
+    /// (the field side is ahead where it is positive), and how far ahead of the wheel profile's origin the section lies \[mm\]; NaN where
+    /// the wheel touches nothing.
     #[serde(serialize_with = "floats")]
     pub places: Vec<f64>,
+    /// The rail's section at every position; empty for a rail of one profile.
+    pub rails: Vec<PageCut>,
+    /// The profile of the wheel of revolution that has the wheel's section, at every position; empty for a wheel of one profile.
+    pub wheels: Vec<PageCut>,
     /// Index of the position of every contact.
     pub position: Vec<usize>,
     /// Abscissa \[mm\] of every contact on the rail's profile.
@@ -55,6 +68,32 @@ pub struct SweepSide {
     /// Abscissa \[mm\] of every contact on the wheel's profile.
     #[serde(serialize_with = "floats")]
     pub wheel_x: Vec<f64>,
+    /// Contact angle \[rad\] of every contact.
+    #[serde(serialize_with = "floats")]
+    pub angle: Vec<f64>,
+    /// Vertical gap \[mm\] of every contact at first touch.
+    #[serde(serialize_with = "floats")]
+    pub gap: Vec<f64>,
+}
+
+/// What happens between two positions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PageEvent {
+    /// Where, on the axis of the curves.
+    pub at: f64,
+    /// What stands in the columns of the list.
+    pub cells: Vec<String>,
+}
+
+/// The list of events.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct PageEvents {
+    /// Names of the columns, the place first.
+    pub columns: Vec<String>,
+    /// The events, the place first.
+    pub rows: Vec<PageEvent>,
+    /// How many there are besides.
+    pub more: usize,
 }
 
 /// A number with its meaning.
@@ -88,7 +127,7 @@ pub struct PageMap {
     pub values: Vec<f64>,
 }
 
-/// The page of a sweep.
+/// The page of a sweep or a march.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepPage {
     /// Title.
@@ -99,21 +138,25 @@ pub struct SweepPage {
     pub version: String,
     /// Name of the abscissa, with its unit.
     pub abscissa: String,
-    /// Lateral displacements \[mm\], ascending.
+    /// The positions on it, ascending.
     #[serde(serialize_with = "floats")]
-    pub lateral: Vec<f64>,
+    pub positions: Vec<f64>,
     /// The panels of curves.
     pub panels: Vec<SweepPanel>,
     /// The profiles of the sides.
     pub pairs: Vec<PagePair>,
     /// Left and right side.
     pub sides: Vec<SweepSide>,
+    /// What happens between the positions; none of a sweep.
+    pub events: PageEvents,
     /// Key figures; none of a plain sweep.
     pub figures: Vec<PageFigure>,
     /// The conicity over gauge and amplitude; `None` of a plain sweep.
     pub map: Option<PageMap>,
     /// What a reader should know before using the numbers.
     pub findings: Vec<String>,
+    /// Statements about the page, below it.
+    pub notes: Vec<String>,
 }
 
 impl SweepPage {

@@ -7,6 +7,7 @@
 //! swept body above it (`above`).
 
 mod above;
+mod cut;
 mod node;
 mod place;
 mod settle;
@@ -25,6 +26,8 @@ use crate::lofted::{Loft, LoftedBody, LoftedWheel, Strip, turned};
 use crate::placement::Pair;
 use crate::profile::{Profile, Section, Side};
 use above::{SweptAbove, Varying};
+pub use cut::Cut;
+use cut::{cut_rail, cut_wheel};
 use node::{BoundPart, Part};
 use place::{candidate, contact};
 use settle::{Found, Gap, Settled, apart};
@@ -200,6 +203,20 @@ impl LoftedPair {
         self.varying == Varying::Wheel
     }
 
+    /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin. That is at `along`
+    /// \[mm\] of a rail's list; of a wheel, yawed by `yaw` \[rad\], −pitch \[rad\] lies lowest.
+    pub(super) fn cut(&self, [along, pitch]: [f64; 2], yaw: f64, ahead: f64) -> Cut {
+        match self.varying {
+            Varying::Rail => cut_rail(&self.loft, along + ahead),
+            Varying::Wheel => cut_wheel(&self.loft, self.radius, self.lowest(pitch), yaw, ahead),
+        }
+    }
+
+    /// Coordinate in a wheel's list \[mm\] of what lies lowest at a pitch \[rad\].
+    fn lowest(&self, pitch: f64) -> f64 {
+        self.radius * turned(-pitch, self.middle)
+    }
+
     /// The other body at an attitude.
     fn over<'a>(&'a self, attitude: &'a Attitude) -> SweptAbove<'a> {
         SweptAbove::new(&self.section, attitude, self.varying)
@@ -217,7 +234,7 @@ impl<'a> LoftedSearch<'a> {
     pub fn stand_at(&mut self, along: f64, pitch: f64) {
         self.along = match self.pair.varying {
             Varying::Rail => along,
-            Varying::Wheel => self.pair.radius * turned(-pitch, self.pair.middle),
+            Varying::Wheel => self.pair.lowest(pitch),
         };
     }
 

@@ -4,8 +4,8 @@
 //
 // The JSON is a list of pages: { name, page, others: [{ contact, delta, loops, area, plane }] }, where `others` are runs of the
 // same scene with other approaches, mm: the exact loops of their boundaries and their area, of the gap that the page shows first.
-// Runs over the rail's surface have the loops of s, too, as `plane`. A page with `table`, the CSV of a sweep, is that of the
-// sweep. Keys, pointer, themes and telephone are tried on the first page and on those of more than two contacts. A failed check
+// Runs over the rail's surface have the loops of s, too, as `plane`. A page with `table`, the CSV of a sweep or a march, is that of
+// the sweep or the march, whose events are in `events`. Keys, pointer, themes and telephone are tried on the first page and on those of more than two contacts. A failed check
 // ends with exit code 1.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -215,42 +215,99 @@ async function telephone(browser, file) {
     await context.close();
 }
 
-/** The page of a sweep says what its table says, wherever the slider, the pointer and the keys take it. */
+/** The rows of a CSV file by the names of their columns. */
+function rowsOf(file) {
+    const [header, ...lines] = readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
+    return lines.map((cells) => Object.fromEntries(header.map((name, k) => [name, cells[k]])));
+}
+
+/** A number of the page, and half of its last decimal. */
+function numberOf(text) {
+    const value = Number(text.replace("\u2212", "-"));
+    return [value, 0.51 * 10 ** -(text.split(".")[1]?.length ?? 0)];
+}
+
+/** What the panels of a march show of a side's lowest contact: column and factor. */
+const OF_MARCH = [
+    ["z_mm", 1], ["rolling_radius_mm", 1], ["rail_x_mm", 1], ["wheel_x_mm", 1], ["y_mm", 1], ["contact_angle_rad", 180 / Math.PI],
+];
+
+/** The panels say what the rows of a position say. */
+function panelsAgree(panels, rows, column) {
+    const place = rows[0][column];
+    if (column === "lateral_mm") {
+        const [shown, within] = numberOf(panels[0][0][1]);
+        assert.ok(Math.abs(shown - rows[0].delta_r_mm) <= within, `Δr ${shown} and ${rows[0].delta_r_mm} at ${place}`);
+        return;
+    }
+    for (const [k, [name, factor]] of OF_MARCH.entries()) {
+        for (const [side, text] of panels[k]) {
+            const expected = factor * rows.find((row) => row.side === side && row.contact === "1")[name];
+            const [shown, within] = numberOf(text);
+            assert.ok(Math.abs(shown - expected) <= within + 1e-6 * Math.abs(expected), `${side} ${name} ${shown} and ${expected} at ${place}`);
+        }
+    }
+}
+
+/** The page of a sweep or a march says what its table says, wherever the slider, the pointer and the keys take it. */
 async function sweep(page, table) {
-    const [header, ...lines] = readFileSync(table, "utf8").trim().split("\n").map((line) => line.split(","));
-    const rows = lines.map((cells) => Object.fromEntries(header.map((name, k) => [name, cells[k]])));
-    const displacements = [...new Set(rows.map((row) => row.lateral_mm))];
-    assert.equal(await page.evaluate(() => window.wheelrail.positions), displacements.length);
+    const rows = rowsOf(table);
+    const [column] = Object.keys(rows[0]);
+    const places = [...new Set(rows.map((row) => row[column]))];
+    assert.equal(await page.evaluate(() => window.wheelrail.positions), places.length);
     let apart = 0;
-    for (const [number, displacement] of displacements.entries()) {
+    for (const [number, place] of places.entries()) {
         await page.locator("#position").fill(String(number));
-        const [lateral, sides, radii] = await page.evaluate(() => {
-            const sides = [0, 1].map((k) => [window.wheelrail.contacts(k), window.wheelrail.joined(k)]);
-            return [window.wheelrail.lateral(), sides, window.wheelrail.values(0)];
+        const [position, sides, panels] = await page.evaluate(() => {
+            const { wheelrail } = window;
+            const sides = [0, 1].map((k) => [wheelrail.contacts(k), wheelrail.joined(k)]);
+            return [wheelrail.position(), sides, Array.from({ length: wheelrail.panels }, (_, k) => wheelrail.values(k))];
         });
-        assert.ok(Math.abs(lateral - displacement) < 1e-5, `${lateral} at ${displacement}`);
+        assert.ok(Math.abs(position - place) < 1e-5, `${position} at ${place}`);
+        const here = rows.filter((row) => row[column] === place);
         for (const [side, [contacts, joined]] of ["left", "right"].map((side, k) => [side, sides[k]])) {
-            const own = rows.filter((row) => row.lateral_mm === displacement && row.side === side);
-            const expected = own.map((row) => [Number(row.rail_x_mm), Number(row.wheel_x_mm)]);
-            assert.equal(contacts.length, expected.length, `${side} at ${displacement}`);
-            contacts.flat().forEach((x, k) => assert.ok(Math.abs(x - expected.flat()[k]) < 1e-4));
+            const own = here.filter((row) => row.side === side);
+            const shown = contacts.map(({ rail, wheel, angle, gap }) => [rail, wheel, angle, gap]);
+            const expected = own.map((row) => [row.rail_x_mm, row.wheel_x_mm, row.contact_angle_rad, row.gap_mm].map(Number));
+            assert.equal(shown.length, expected.length, `${side} at ${place}`);
+            shown.flat().forEach((x, k) => assert.ok(Math.abs(x - expected.flat()[k]) < 1e-4));
             const touching = joined.filter((_, k) => Number(own[k].gap_mm) === 0);
             for (const [[a, b], [c, d]] of touching) apart = Math.max(apart, Math.hypot(a - c, b - d));
         }
-        const delta = Number(rows.find((row) => row.lateral_mm === displacement).delta_r_mm);
-        const shown = Number(radii[0][1].replace("\u2212", "-"));
-        assert.ok(Math.abs(shown - delta) <= 0.0051, `Δr ${shown} and ${delta} at ${displacement}`);
+        panelsAgree(panels, here, column);
     }
     assert.ok(apart < WITHIN_PICTURE, `points of contact ${apart} mm apart`);
     const canvas = page.locator("canvas.cut").nth(3);
     const box = await canvas.boundingBox();
     await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
     const pointed = await page.evaluate(() => window.wheelrail.at());
-    assert.ok(pointed > 0 && pointed < displacements.length / 2, `the pointer chose ${pointed}`);
+    assert.ok(pointed > 0 && pointed < places.length / 2, `the pointer chose ${pointed}`);
     await canvas.focus();
     await page.keyboard.press("ArrowRight");
     assert.equal(await page.evaluate(() => window.wheelrail.at()), pointed + 1);
-    return `${displacements.length} positions, points of contact at most ${apart.toExponential(1)} mm apart`;
+    return `${places.length} positions, points of contact at most ${apart.toExponential(1)} mm apart`;
+}
+
+/** The events of a march are those of its table; each is marked on the curves, and its button, by pointer or key, goes there. */
+async function listed(page, file) {
+    const expected = rowsOf(file);
+    const [column] = Object.keys(expected[0]);
+    const buttons = page.locator(".events button");
+    assert.equal(await buttons.count(), expected.length);
+    for (const [k, event] of expected.entries()) {
+        const button = buttons.nth(k);
+        const [shown, within] = numberOf(await button.textContent());
+        assert.ok(Math.abs(shown - event[column]) <= within, `${shown} and ${event[column]}`);
+        const cells = await page.locator(".events tbody tr").nth(k).locator("td").allTextContents();
+        assert.deepEqual(cells.slice(1, 3), [event.side, event.event]);
+        await page.evaluate(() => window.wheelrail.move(0));
+        if (k % 2 === 0) await button.click();
+        else await button.press("Enter");
+        const [position, step] = await page.evaluate(() => [window.wheelrail.position(), window.wheelrail.step]);
+        assert.ok(Math.abs(position - event[column]) <= 0.5001 * step, `${position} at ${event[column]}`);
+    }
+    assert.equal(await page.evaluate(() => window.wheelrail.events.length), expected.length);
+    return `; ${expected.length} events`;
 }
 
 /** A telephone, a tablet and a desk, light and dark: nothing is wider than the screen, and no text is a narrow column. */
@@ -289,13 +346,13 @@ const profile = mkdtempSync(join(tmpdir(), "wheelrail-pages-"));
 const [executablePath] = process.argv.slice(2);
 const browser = await chromium.launch({ executablePath, args: [...FLAGS, `--disk-cache-dir=${profile}`] });
 try {
-    for (const [number, { name, page: file, others, table }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
+    for (const [number, { name, page: file, others, table, events }] of JSON.parse(readFileSync(0, "utf8")).entries()) {
         const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, offline: true });
         const page = await open(context, file);
         const drawn = await colours(page);
         assert.ok(drawn.length >= 5 && drawn.every((count) => count > 8), `${name}: colours of the pictures: ${drawn}`);
         if (table) {
-            console.log(`page ${name}: ${drawn.length} pictures; ${await sweep(page, table)}`);
+            console.log(`page ${name}: ${drawn.length} pictures; ${await sweep(page, table)}${events ? await listed(page, events) : ""}`);
             await themes(page);
             assert.deepEqual(page.faults, [], name);
             await context.close();

@@ -141,23 +141,41 @@ fn page(name: &str, dir: &Path, others: Vec<Value>) -> Value {
     json!({ "name": name, "page": file, "others": others })
 }
 
-/// Sweeps the example's wheelset without yaw, so that contacts lie in the section that the page draws.
-fn swept() -> Value {
-    let [path, page, table] = ["page_sweep.toml", "page_sweep.html", "page_sweep.csv"].map(folder);
-    std::fs::write(&path, wheelset("0.0", "approach = 0.05").replace("yaw = 0.002", "yaw = 0.0")).unwrap();
+/// Sweeps the example's wheelset, or marches: the page of what the command computes by these arguments, with its table.
+fn swept(name: &str, command: &str, arguments: &[&str], events: bool) -> Value {
+    let [page, table, told] = ["html", "csv", "events.csv"].map(|end| folder(&format!("page_{name}.{end}")));
     let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
-    program.arg("sweep").arg(&path).args(["--lateral", "-8:8:0.5", "--html"]).arg(&page);
-    let output = program.arg("--out").arg(&table).output().unwrap();
+    program.arg(command).args(arguments).arg("--html").arg(&page).arg("--out").arg(&table);
+    if events {
+        program.arg("--events").arg(&told);
+    }
+    let output = program.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let size = std::fs::metadata(&page).unwrap().len();
     assert!(size < LARGEST, "{size} bytes");
-    json!({ "name": "sweep", "page": page, "table": table })
+    json!({ "name": name, "page": page, "table": table, "events": events.then_some(told) })
+}
+
+/// The sweep of the example's wheelset, which is yawed, and the marches of the examples over a crossing and a flat.
+fn swept_pages() -> [Value; 3] {
+    let path = folder("page_sweep.toml");
+    std::fs::write(&path, wheelset("0.0", "approach = 0.05")).unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let [scene, crossing, flat] =
+        [path, root.join("crossing/crossing.toml"), root.join("wheel_flat/wheel_flat.toml")]
+            .map(|path| path.display().to_string());
+    [
+        swept("sweep", "sweep", &[&scene, "--lateral", "-8:8:0.5"], false),
+        swept("crossing", "march", &[&crossing, "--along", "-100:300:10"], true),
+        swept("flat", "march", &[&flat, "--angle", "-0.1:0.1:0.005"], true),
+    ]
 }
 
 #[test]
 fn pages_open_in_a_browser_and_their_slider_gives_the_boundary_of_a_run() {
     let patch = |approach: &str| format!("[patch]\n{approach}");
     let empty = "[patch]\napproach = 0.01\n[grid]\nxi = { from = 5.0, to = 9.0, n = 31 }\neta = { from = 5.0, to = 9.0, n = 21 }";
+    let [sweep, crossing, flat] = swept_pages();
     let pages = json!([
         compared("tread", |approach| single("offset = 0.0", &patch(approach)), &[0.08, 0.05, 0.16]),
         compared(
@@ -169,7 +187,9 @@ fn pages_open_in_a_browser_and_their_slider_gives_the_boundary_of_a_run() {
         compared("two-point", |approach| wheelset("4.84", approach), &[0.02, 0.012, 0.03]),
         compared("wheelset", |approach| wheelset("2.0", approach), &[0.08, 0.04]),
         page("no-patch", &run("page_no_patch", &single("offset = 0.0", empty), 1), Vec::new()),
-        swept(),
+        sweep,
+        crossing,
+        flat,
     ]);
     let Some(tools) = tools() else { return };
     let mut node = Command::new("node");

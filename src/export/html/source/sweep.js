@@ -1,6 +1,6 @@
-// The page of a sweep.
+// The page of a sweep or a march.
 
-import { Curves } from "./curves.js";
+import { Curves, nearest } from "./curves.js";
 import { floats, pageData, pairsOf } from "./data.js";
 import { element, fixed, saveButton } from "./dom.js";
 import { Heat } from "./heat.js";
@@ -8,8 +8,13 @@ import { PairView } from "./pair.js";
 import { themeButton } from "./themes.js";
 
 const data = pageData();
-const lateral = floats(data.lateral);
-const state = { lateral, at: lateral.length >> 1, lifted: false };
+const positions = floats(data.positions);
+const [, axis, unit] = /^(.*) \[(.*)\]$/.exec(data.abscissa);
+const name = axis[0].toUpperCase() + axis.slice(1);
+const step = (positions[positions.length - 1] - positions[0]) / Math.max(positions.length - 1, 1);
+/** Decimals of a position: two more than a step has. */
+const decimals = Math.min(Math.max(2 - Math.round(Math.log10(step || 1)), 0), 6);
+const state = { positions, at: positions.length >> 1, lifted: false, events: data.events.rows.map((event) => event.at) };
 const pairs = pairsOf(data);
 const sides = data.sides.map((side) => new PairView(side, pairs, state));
 const panels = data.panels.map((panel) => {
@@ -21,7 +26,7 @@ const heat = of ? new Heat({ ...of, gauges: floats(of.gauges), amplitudes: float
 const said = [...sides, ...panels].map(() => element("output", {}));
 const position = element("output", { for: "position", class: "said" });
 const slider = element("input", {
-    id: "position", type: "range", min: 0, max: lateral.length - 1, step: 1, oninput: () => move(Number(slider.value)),
+    id: "position", type: "range", min: 0, max: positions.length - 1, step: 1, oninput: () => move(Number(slider.value)),
 });
 const lifted = element("input", {
     id: "lifted", type: "checkbox",
@@ -38,7 +43,7 @@ page.replaceChildren(
     element(
         "div",
         { class: "head" },
-        element("div", { class: "slider" }, element("label", { for: "position" }, "Lateral displacement"), slider, position, element("label", { for: "lifted", class: "choice" }, lifted, " wheels lifted")),
+        element("div", { class: "slider" }, element("label", { for: "position" }, name), slider, position, element("label", { for: "lifted", class: "choice" }, lifted, " wheels lifted")),
     ),
     element("div", { class: "pairs" }, ...sides.map((side, k) => figure(side.side.right ? "Right side" : "Left side", side, said[k]))),
     element(
@@ -47,12 +52,13 @@ page.replaceChildren(
         ...panels.map((panel, k) => figure(panel.panel.title, panel, said[sides.length + k])),
         ...(heat ? [figure(heat.map.title, heat, heat.readout)] : []),
     ),
+    ...(data.events.rows.length > 0 ? [eventList()] : []),
     ...(data.figures.length > 0 ? [keyFigures()] : []),
     element(
         "footer",
         {},
-        element("p", {}, "The pointer over a curve, the slider, and the left and right arrows (with Shift by ten positions) choose the position; the profiles above stand where the wheelset is there, with its roll and height, seen along the track. Filled: the lowest contact of a side; open: further ones within the gap that the scene asks for. The section is that through the axle: under yaw a contact lies before or behind it, and its two points are not in one place."),
-        element("p", {}, "Numbers of this page are in single precision; the exact ones are in the table of the sweep."),
+        element("p", {}, "The pointer over a curve, the slider, and the left and right arrows (with Shift by ten positions) choose the position; the profiles above stand where the wheelset is there, with its roll and height, seen along the track. Filled: the lowest contact of a side; open: further ones within the gap that the scene asks for."),
+        ...data.notes.map((note) => element("p", {}, note)),
     ),
 );
 page.addEventListener("keydown", (event) => {
@@ -67,6 +73,19 @@ function figure(title, view, output) {
     return element("figure", {}, element("figcaption", {}, title, saveButton(view.sheet, `${data.title}, ${title}`)), view.sheet.canvas, output);
 }
 
+/** What happens between the positions: the place of each goes there. */
+function eventList() {
+    const { columns, rows, more } = data.events;
+    const go = (at, place) => element("button", { type: "button", onclick: () => move(nearest(positions, at)), "aria-label": `Go to ${place}` }, place);
+    const row = ({ at, cells: [place, ...cells] }) => element("tr", {}, element("td", {}, go(at, place)), ...cells.map((cell) => element("td", {}, cell)));
+    const table = element(
+        "table", { class: "events" }, element("caption", {}, "Events"),
+        element("thead", {}, element("tr", {}, ...columns.map((column) => element("th", { scope: "col" }, column)))), element("tbody", {}, ...rows.map(row)),
+    );
+    const rest = more > 0 ? [element("p", {}, `${more} more are in the table of events.`)] : [];
+    return element("div", { class: "facts wide" }, table, ...rest);
+}
+
 /** The key figures with their meaning. */
 function keyFigures() {
     const row = ({ name, value, meaning }) =>
@@ -77,9 +96,9 @@ function keyFigures() {
 
 /** Goes to a position by its number. */
 function move(at) {
-    state.at = Math.min(Math.max(at, 0), lateral.length - 1);
+    state.at = Math.min(Math.max(at, 0), positions.length - 1);
     slider.value = state.at;
-    position.value = `${fixed(lateral[state.at], 3)} mm`;
+    position.value = `${fixed(positions[state.at], decimals)} ${unit}`;
     slider.setAttribute("aria-valuetext", position.value);
     sides.forEach((side, k) => (said[k].value = side.said()));
     panels.forEach((panel, k) => {
@@ -93,11 +112,14 @@ function refresh() {
     [...sides, ...panels, ...(heat ? [heat] : [])].forEach((view) => view.sheet.refresh());
 }
 
-// What tests and scripts ask of the page: lengths in mm.
+// What tests and scripts ask of the page: lengths in mm, angles in rad.
 window.wheelrail = {
-    positions: lateral.length,
+    positions: positions.length,
     at: () => state.at,
-    lateral: () => lateral[state.at],
+    position: () => positions[state.at],
+    step,
+    events: state.events,
+    panels: panels.length,
     move,
     values: (k) => panels[k].said(),
     contacts: (k) => sides[k].contacts[state.at],

@@ -1,0 +1,120 @@
+//! The picture and the page of a march.
+
+use super::curves::over;
+use super::input::Profiles;
+use super::march::{AROUND, MarchColumns, MarchCourse, event_numbers};
+use super::sweep_view::{Shown, page_of};
+use crate::error::Result;
+use crate::export::{CurvesPicture, PageEvent, PageEvents, SweepPage};
+use crate::search::{Event, March};
+
+/// Quantities of each side's lowest contact that the picture shows: heading, axis with unit, column, factor.
+const SHOWN: [(&str, &str, &str, f64); 6] = [
+    ("Height of the centre", "z [mm]", "z_mm", 1.0),
+    ("Rolling radius", "r [mm]", "rolling_radius_mm", 1.0),
+    ("Contact on the rail", "x on the rail [mm]", "rail_x_mm", 1.0),
+    ("Contact on the wheel", "x on the wheel [mm]", "wheel_x_mm", 1.0),
+    ("Contact ahead of the axle", "y [mm]", "y_mm", 1.0),
+    ("Contact angle", "θ [°]", "contact_angle_rad", 180.0 / std::f64::consts::PI),
+];
+
+/// Most events that a page lists: more than anybody goes through.
+const MOST_LISTED: usize = 400;
+
+/// The events of a march that its page lists.
+#[derive(Debug, Clone, Default)]
+pub struct ListedEvents {
+    events: Vec<Event>,
+    more: usize,
+}
+
+impl ListedEvents {
+    /// Takes an event, or counts it where there are too many.
+    pub fn push(&mut self, event: &Event) {
+        if self.events.len() < MOST_LISTED { self.events.push(*event) } else { self.more += 1 }
+    }
+
+    fn on_page(&self, course: MarchCourse) -> PageEvents {
+        let columns = [course.axis, "side", "event", "x on the rail [mm]", "x on the wheel [mm]", "y [mm]"];
+        let numbers = ["change of r [mm]", "impact angle [mrad]", "gap [mm]"];
+        PageEvents {
+            columns: columns.into_iter().chain(numbers).map(Into::into).collect(),
+            rows: self.events.iter().map(|event| page_event(event, course)).collect(),
+            more: self.more,
+        }
+    }
+}
+
+/// Puts an event into words.
+fn page_event(event: &Event, course: MarchCourse) -> PageEvent {
+    let number = |value: f64, decimals: usize| match format!("{value:.decimals$}") {
+        _ if value.is_nan() => String::new(),
+        // 0 without a sign.
+        text if !text.contains(|c| ('1'..='9').contains(&c)) => text.replace('-', ""),
+        text => text.replace('-', "\u{2212}"),
+    };
+    let [rail, rail_after, wheel, wheel_after, y, y_after, jump, _, _, impact, gap] = event_numbers(event);
+    let both = |[before, after]: [f64; 2]| match [number(before, 2), number(after, 2)] {
+        [before, after] if before == after => before,
+        [before, after] => format!("{before} → {after}").trim().into(),
+    };
+    PageEvent {
+        at: event.along,
+        cells: vec![
+            number(event.along, course.decimals),
+            event.side.name().into(),
+            event.kind.name().into(),
+            both([rail, rail_after]),
+            both([wheel, wheel_after]),
+            both([y, y_after]),
+            number(jump, 3),
+            number(1e3 * impact, 2),
+            number(gap, 4),
+        ],
+    }
+}
+
+/// A march at the stops that are drawn.
+pub struct DrawnMarch<'a> {
+    /// The march.
+    pub march: &'a March,
+    /// The profiles of both sides; those that vary are cut anew at every stop.
+    pub profiles: &'a Profiles,
+    /// What it goes along.
+    pub course: MarchCourse,
+    /// Its contacts at the stops.
+    pub columns: &'a MarchColumns,
+    /// Ascending places of the stops on the course \[mm\], or \[rad\].
+    pub places: &'a [f64],
+    /// Title, and the line below it.
+    pub headings: [&'a str; 2],
+}
+
+impl DrawnMarch<'_> {
+    /// Makes the picture.
+    ///
+    /// # Errors
+    /// Places that do not ascend.
+    pub fn picture(&self) -> Result<CurvesPicture> {
+        let [title, about] = self.headings;
+        over(&self.columns.columns, (self.course.axis, self.places), &SHOWN, (title, about))
+    }
+
+    /// Makes the page: the same curves over a slider along the course, with the sections of rails and wheels at every stop.
+    ///
+    /// # Errors
+    /// Places that do not ascend.
+    pub fn page(&self, events: &ListedEvents) -> Result<SweepPage> {
+        let pitch = self.march.pitch;
+        let stands = |at: f64| if self.course == AROUND { [0.0, at] } else { [at, pitch] };
+        let shown = Shown {
+            profiles: self.profiles,
+            system: &self.march.system,
+            columns: &self.columns.columns,
+            positions: self.places,
+            stands: &stands,
+            table: "march",
+        };
+        Ok(SweepPage { events: events.on_page(self.course), ..page_of(&shown, self.picture()?) })
+    }
+}
