@@ -42,29 +42,39 @@ pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
 
 /// Writes `table.csv`: a row for each cell and each quantity that exists there, with the cell's number from 1, its ends, the codes of
 /// how it begins, the quantity, its stated error over the whole table, and the coefficients of 1, t, … t⁸. A cell in which a wheel is
-/// off its rail has one row without a quantity.
+/// off its rail has one row without a quantity. Over yaw rows also have the yaws of the cell, and there is one for each power j of u; the ends
+/// are then d0 + d1 u + … d4 u⁴ and e0 + … e4 u⁴ with the same u, from −1 to 1 over the yaws of the cell.
 pub fn table_csv(table: &ContactTable) -> String {
-    let powers: Vec<String> = (0..COEFFICIENTS).map(|k| format!("c{k}")).collect();
-    let mut text = format!("cell,from_mm,to_mm,begins,side,quantity,error,{}\n", powers.join(","));
+    let (powers, over_yaw, count) = (COEFFICIENTS, table.about().over_yaw(), table.about().yaw_coefficients());
+    let names = |letter: &str, count: usize| -> String { (0..count).map(|k| format!(",{letter}{k}")).collect() };
+    let ends = names("d", count) + &names("e", count);
+    let mut text = match over_yaw {
+        true => format!("cell,yaw_from_rad,yaw_to_rad,begins,side,quantity,error,j{}{ends}\n", names("c", powers)),
+        false => format!("cell,from_mm,to_mm,begins,side,quantity,error{}\n", names("c", powers)),
+    };
     for (c, cell) in table.cells().iter().enumerate() {
-        let [from, to] = cell.lateral;
-        let place = format!("{},{from:?},{to:?},{}", c + 1, cell.begins.code());
+        let [from, to] = if over_yaw { cell.yaw } else { table.ends(c, cell.yaw[0]) };
+        let place = format!("{},{from:?},{to:?},{}", c + 1, table.begins(c).code());
+        let ends = if over_yaw { numbers(&cell.curves.map(|k| table.curves()[k].over(cell.yaw)).concat()) } else { String::new() };
         if !cell.touches {
-            let _ = writeln!(text, "{place},,,{}", ",".repeat(COEFFICIENTS));
+            let _ = writeln!(text, "{place},,,{}{ends}", ",".repeat(powers + usize::from(over_yaw)));
         }
         for (q, quantity) in table.quantities().iter().enumerate() {
-            let coefficients = table.coefficients(c, q);
-            if coefficients[0].is_nan() {
-                continue;
+            for j in (0..count).filter(|j| !table.coefficients(c, q, *j)[0].is_nan()) {
+                let _ = write!(text, "{place},{},{},{:?}", quantity.side(), quantity.name, quantity.error);
+                if over_yaw {
+                    let _ = write!(text, ",{j}");
+                }
+                let _ = writeln!(text, "{}{ends}", numbers(&table.coefficients(c, q, j)));
             }
-            let _ = write!(text, "{place},{},{},{:?}", quantity.side(), quantity.name, quantity.error);
-            for c in coefficients {
-                let _ = write!(text, ",{c:?}");
-            }
-            text.push('\n');
         }
     }
     text
+}
+
+/// Writes numbers, each behind a comma.
+fn numbers(values: &[f64]) -> String {
+    values.iter().map(|value| format!(",{value:?}")).collect()
 }
 
 /// Gives the number that says which ends are cut.
