@@ -42,39 +42,49 @@ pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
 
 /// Writes `table.csv`: a row for each cell and each quantity that exists there, with the cell's number from 1, its ends, the codes of
 /// how it begins, the quantity, its stated error over the whole table, and the coefficients of 1, t, … t⁸. A cell in which a wheel is
-/// off its rail has one row without a quantity. Over yaw rows also have the yaws of the cell, and there is one for each power j of u; the ends
-/// are then d0 + d1 u + … d4 u⁴ and e0 + … e4 u⁴ with the same u, from −1 to 1 over the yaws of the cell.
+/// off its rail has one row without a quantity.
+///
+/// Over yaw a row has the yaws of the cell in place of its ends, and there is one for each power j of u. The ends are the first two
+/// quantities of each cell, `from_mm` and `to_mm` of the wheelset, with the same u from −1 to 1 over the yaws of the cell.
 pub fn table_csv(table: &ContactTable) -> String {
-    let (powers, over_yaw, count) = (COEFFICIENTS, table.about().over_yaw(), table.about().yaw_coefficients());
-    let names = |letter: &str, count: usize| -> String { (0..count).map(|k| format!(",{letter}{k}")).collect() };
-    let ends = names("d", count) + &names("e", count);
-    let mut text = match over_yaw {
-        true => format!("cell,yaw_from_rad,yaw_to_rad,begins,side,quantity,error,j{}{ends}\n", names("c", powers)),
-        false => format!("cell,from_mm,to_mm,begins,side,quantity,error{}\n", names("c", powers)),
-    };
+    let about = table.about();
+    let (ends, power) =
+        if about.over_yaw() { ("yaw_from_rad,yaw_to_rad", ",j") } else { ("from_mm,to_mm", "") };
+    let powers: String = (0..COEFFICIENTS).map(|k| format!(",c{k}")).collect();
+    let mut text = format!("cell,{ends},begins,side,quantity,error{power}{powers}\n");
     for (c, cell) in table.cells().iter().enumerate() {
-        let [from, to] = if over_yaw { cell.yaw } else { table.ends(c, cell.yaw[0]) };
+        let [from, to] = if about.over_yaw() { cell.yaw } else { table.ends(c, cell.yaw[0]) };
         let place = format!("{},{from:?},{to:?},{}", c + 1, table.begins(c).code());
-        let ends = if over_yaw { numbers(&cell.curves.map(|k| table.curves()[k].over(cell.yaw)).concat()) } else { String::new() };
-        if !cell.touches {
-            let _ = writeln!(text, "{place},,,{}{ends}", ",".repeat(powers + usize::from(over_yaw)));
+        let mut put = |quantity: &str, error: f64, j: usize, coefficients: &[f64]| {
+            let _ = write!(text, "{place},{quantity},{error:?}");
+            if about.over_yaw() {
+                let _ = write!(text, ",{j}");
+            }
+            coefficients.iter().for_each(|c| {
+                let _ = write!(text, ",{c:?}");
+            });
+            text.push('\n');
+        };
+        if about.over_yaw() {
+            for (name, curve) in ["wheelset,from_mm", "wheelset,to_mm"].into_iter().zip(cell.curves) {
+                for (j, y) in table.curves()[curve].over(cell.yaw).into_iter().enumerate() {
+                    let mut coefficients = [0.0; COEFFICIENTS];
+                    coefficients[0] = y;
+                    put(name, about.beside_curves(), j, &coefficients);
+                }
+            }
+        } else if !cell.touches {
+            let _ = writeln!(text, "{place},,,{}", ",".repeat(COEFFICIENTS));
+            continue;
         }
         for (q, quantity) in table.quantities().iter().enumerate() {
-            for j in (0..count).filter(|j| !table.coefficients(c, q, *j)[0].is_nan()) {
-                let _ = write!(text, "{place},{},{},{:?}", quantity.side(), quantity.name, quantity.error);
-                if over_yaw {
-                    let _ = write!(text, ",{j}");
-                }
-                let _ = writeln!(text, "{}{ends}", numbers(&table.coefficients(c, q, j)));
+            for j in (0..about.yaw_coefficients()).filter(|j| !table.coefficients(c, q, *j)[0].is_nan()) {
+                let name = format!("{},{}", quantity.side(), quantity.name);
+                put(&name, quantity.error, j, &table.coefficients(c, q, j));
             }
         }
     }
     text
-}
-
-/// Writes numbers, each behind a comma.
-fn numbers(values: &[f64]) -> String {
-    values.iter().map(|value| format!(",{value:?}")).collect()
 }
 
 /// Gives the number that says which ends are cut.

@@ -1,7 +1,8 @@
 //! Builds a table: divides the range into cells with polynomials, and states what they err by.
 
+use super::about::About;
 use super::asked::Asked;
-use super::contact_table::{About, ContactTable};
+use super::contact_table::ContactTable;
 use super::fit::MARGIN;
 use super::quantity::{MOST, Quantity};
 use super::region::Divider;

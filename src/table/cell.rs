@@ -9,6 +9,9 @@ pub const YAW_COEFFICIENTS: usize = 5;
 /// Width \[mm\] to which a place is found where contact hops or crosses a joint.
 pub const BREAK: f64 = 1e-9;
 
+/// Distance \[mm\] from a curve over yaw at which one of its sides is searched for certain.
+pub(super) const INSIDE: f64 = 1e-7;
+
 /// How a cell begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Beginning {

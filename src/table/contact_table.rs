@@ -1,12 +1,14 @@
 //! The table: cells with their polynomials, and how they are looked up.
 
+use std::array::from_fn;
+
 use rayon::prelude::*;
 
-use super::cell::{Beginning, COEFFICIENTS, Cell, YAW_COEFFICIENTS};
+use super::about::About;
+use super::cell::{Beginning, COEFFICIENTS, Cell};
 use super::curve::{Curve, share};
 use super::quantity::{MOST, Quantity};
 use super::read::{Parsed, parse};
-use super::region::beside_curves;
 use super::tree::{Fork, Part, Tree};
 use crate::error::{Error, Result};
 
@@ -44,41 +46,14 @@ pub struct ContactTable {
     coefficients: Vec<f64>,
 }
 
-/// What a table is of.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct About {
-    /// Range of lateral displacements \[mm\].
-    pub lateral: [f64; 2],
-    /// Range of yaws \[rad\]: with equal ends the one yaw that all displacements have.
-    pub yaw: [f64; 2],
-    /// Nominal rolling radius \[mm\], over which the tolerance of angles is taken.
-    pub radius: f64,
-    /// Tolerance of lengths \[mm\].
-    pub tolerance: f64,
-}
+/// Quantities that are computed together.
+const LANES: usize = 4;
 
 /// Positions that one thread takes at a time.
 const TOGETHER: usize = 4096;
 
 /// Positions whose values are found before they are put into columns: 7 kB.
 const ROWS: usize = 32;
-
-impl About {
-    /// Tells whether the table is over a range of yaws.
-    pub fn over_yaw(&self) -> bool {
-        self.yaw[1] > self.yaw[0]
-    }
-
-    /// Returns how many coefficients the polynomials of the yaw have.
-    pub fn yaw_coefficients(&self) -> usize {
-        if self.over_yaw() { YAW_COEFFICIENTS } else { 1 }
-    }
-
-    /// Returns the distance \[mm\] from curves within which a table states nothing: there the values of the other side may be given.
-    pub fn beside_curves(&self) -> f64 {
-        beside_curves(self.over_yaw())
-    }
-}
 
 impl ContactTable {
     /// Takes a tree as a table.
@@ -97,7 +72,8 @@ impl ContactTable {
             Part::Cell(cell) => cell < cells.len(),
         };
         for (f, fork) in forks.iter().enumerate() {
-            if !fork.parts.iter().all(|part| known(f, part)) || fork.curve.is_some_and(|c| c >= curves.len()) {
+            if !fork.parts.iter().all(|part| known(f, part)) || fork.curve.is_some_and(|c| c >= curves.len())
+            {
                 return Err(wrong(format!("fork {}", f + 1), "parts and curves of the table"));
             }
         }
@@ -162,7 +138,7 @@ impl ContactTable {
     /// the yaws of the cell; not numbers where the quantity does not exist.
     pub fn coefficients(&self, cell: usize, quantity: usize, j: usize) -> [f64; COEFFICIENTS] {
         let (count, rows) = (self.quantities.len(), self.about.yaw_coefficients());
-        std::array::from_fn(|k| self.coefficients[((cell * rows + j) * COEFFICIENTS + k) * count + quantity])
+        from_fn(|k| self.coefficients[((cell * rows + j) * COEFFICIENTS + k) * count + quantity])
     }
 
     /// Returns the number of the cell of a lateral displacement \[mm\] and a yaw \[rad\]; `None` outside the range.
@@ -207,19 +183,29 @@ impl ContactTable {
             out.fill(f64::NAN);
             return;
         };
-        let count = out.len();
-        let mut sums = [0.0; COEFFICIENTS * MOST];
-        let sums = &mut sums[..COEFFICIENTS * count];
-        let mut of_yaw = rows.chunks_exact(COEFFICIENTS * count).rev();
-        of_yaw.next().into_iter().for_each(|highest| sums.copy_from_slice(highest));
-        for row in of_yaw {
-            sums.iter_mut().zip(row).for_each(|(sum, c)| *sum = *sum * u + c);
+        let (whole, rest) = out.as_chunks_mut::<LANES>();
+        let behind = LANES * whole.len();
+        for (k, values) in whole.iter_mut().enumerate() {
+            *values = self.values(rows, LANES * k, t, u);
         }
-        let mut sums = sums.chunks_exact(count).rev();
-        sums.next().into_iter().for_each(|highest| out.copy_from_slice(highest));
-        for row in sums {
-            out.iter_mut().zip(row).for_each(|(value, c)| *value = *value * t + c);
+        for (k, value) in rest.iter_mut().enumerate() {
+            [*value] = self.values(rows, behind + k, t, u);
         }
+    }
+
+    /// Gives N quantities from a number on, from the coefficients of a cell.
+    fn values<const N: usize>(&self, rows: &[f64], first: usize, t: f64, u: f64) -> [f64; N] {
+        let count = self.quantities.len();
+        let mut values = [0.0; N];
+        for k in (0..COEFFICIENTS).rev() {
+            let mut sums = [0.0; N];
+            for row in rows.chunks_exact(COEFFICIENTS * count).rev() {
+                let own = &row[k * count + first..][..N];
+                sums = from_fn(|i| sums[i] * u + own[i]);
+            }
+            values = from_fn(|i| values[i] * t + sums[i]);
+        }
+        values
     }
 
     /// Returns the coefficients of a cell, and where a position is in it.
@@ -241,7 +227,11 @@ impl ContactTable {
         }
         let parts = parts.into_par_iter().zip(lateral.par_chunks(TOGETHER)).enumerate();
         parts.for_each(|(k, (mut columns, lateral))| {
-            let yaw = if let [one] = yaw { std::slice::from_ref(one) } else { &yaw[k * TOGETHER..][..lateral.len()] };
+            let yaw = if let [one] = yaw {
+                std::slice::from_ref(one)
+            } else {
+                &yaw[k * TOGETHER..][..lateral.len()]
+            };
             self.fill_columns(lateral, yaw, numbers, &mut columns);
         });
     }
@@ -286,6 +276,28 @@ impl ContactTable {
     pub fn off_rail(&self, yaw: f64) -> Vec<[f64; 2]> {
         let off = self.under(yaw).into_iter().filter(|cell| !self.cells[*cell].touches);
         off.map(|cell| self.ends(cell, yaw)).collect()
+    }
+
+    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under one of the yaws, in ascending order.
+    pub fn off_rail_somewhere(&self) -> Vec<[f64; 2]> {
+        let off = (0..self.cells.len()).filter(|cell| !self.cells[*cell].touches);
+        let mut ranges: Vec<[f64; 2]> = off
+            .map(|cell| {
+                let [first, last] = self.cells[cell].yaw;
+                let yaws = [first, first + (last - first) / 2.0, last];
+                let ends = yaws.map(|yaw| self.ends(cell, yaw));
+                ends.into_iter().fold(ends[0], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
+            })
+            .collect();
+        ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        ranges.dedup_by(|next, before| {
+            let joined = next[0] <= before[1];
+            if joined {
+                before[1] = before[1].max(next[1]);
+            }
+            joined
+        });
+        ranges
     }
 
     /// Returns the displacements \[mm\] of hops, joints or edges under a yaw \[rad\], in ascending order.

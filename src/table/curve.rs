@@ -36,9 +36,8 @@ impl Curve {
 
     /// Returns the coefficients \[mm\] of 1, u, … with u from −1 to 1 over other yaws \[rad\].
     pub fn over(&self, yaw: [f64; 2]) -> [f64; YAW_COEFFICIENTS] {
-        let nodes: [f64; YAW_COEFFICIENTS] = from_fn(|k| {
-            self.at(yaw[0] + (yaw[1] - yaw[0]) * (0.5 * (1.0 + node(k, YAW_COEFFICIENTS))))
-        });
+        let nodes: [f64; YAW_COEFFICIENTS] =
+            from_fn(|k| self.at(yaw[0] + (yaw[1] - yaw[0]) * (0.5 * (1.0 + node(k, YAW_COEFFICIENTS)))));
         Self::through(&nodes, yaw, self.kind).coefficients
     }
 

@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 
+use super::asked::Asked;
 use super::breaks::{Break, HOP, Row, divide};
 use super::cell::{BREAK, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 use super::curve::{Curve, POWERS, YAW_POWERS, node, share};
 use super::quantity::{MOST, Needs, Quantity, Values};
-use super::region::Divider;
 use super::state::{Sampler, State};
 use crate::error::Result;
+use crate::search::WheelsetOnTrack;
 
 /// Stated error over the largest difference in the check of a cell. The check is made where the polynomial through the nodes is
 /// largest, between them.
@@ -63,7 +64,13 @@ pub(super) enum Fit {
 ///
 /// # Errors
 /// The errors of the search.
-pub(super) fn fit(divider: &Divider<'_>, curves: &[Curve; 2], rows: &mut [Row]) -> Result<Fit> {
+pub(super) fn fit(
+    system: &WheelsetOnTrack,
+    asked: &Asked,
+    quantities: &[Quantity],
+    curves: &[Curve; 2],
+    rows: &mut [Row],
+) -> Result<Fit> {
     let begin = rows[0].ends[0].topology;
     let cell = Cell {
         yaw: [rows[0].yaw, rows[rows.len() - 1].yaw],
@@ -75,7 +82,6 @@ pub(super) fn fit(divider: &Divider<'_>, curves: &[Curve; 2], rows: &mut [Row]) 
         let fitted = Fitted { cell, coefficients: Vec::new(), errors: [0.0; MOST] };
         return Ok(Fit::Cell(Box::new(fitted)));
     }
-    let (system, asked) = (divider.system, divider.asked);
     let width = rows.iter().map(|row| row.ends[1].lateral - row.ends[0].lateral).fold(0.0, f64::max);
     let along = |row: &mut Row| {
         let mut sampler = Sampler::new(system, asked, row.yaw);
@@ -96,23 +102,12 @@ pub(super) fn fit(divider: &Divider<'_>, curves: &[Curve; 2], rows: &mut [Row]) 
             others.for_each(|sample| sample.values = begin.values);
         }
     }
-    let quantities = divider.quantities;
     let (fitted, over_yaw) = Fitted::new(cell, quantities, curves, &samples, rows);
     if width <= SHORTEST || fitted.is_fine(quantities, &samples, rows) {
         return Ok(Fit::Cell(Box::new(fitted)));
     }
-    if width <= MAY_JUMP {
-        let mut jumps = false;
-        for (samples, row) in samples.iter().zip(rows) {
-            let mut sampler = Sampler::new(system, asked, row.yaw);
-            if let Some(jump) = jump(&mut sampler, samples, &row.breaks)? {
-                add(row, vec![jump]);
-                jumps = true;
-            }
-        }
-        if jumps {
-            return Ok(Fit::Unseen);
-        }
+    if width <= MAY_JUMP && add_jumps(system, asked, &samples, rows)? {
+        return Ok(Fit::Unseen);
     }
     let middles = samples.iter().map(|samples| samples[SAMPLES / 2].clone()).collect();
     Ok(Fit::Coarse { over_yaw, middles })
@@ -155,6 +150,24 @@ fn is_known(breaks: &[Break], pair: &[State]) -> bool {
 fn add(row: &mut Row, breaks: Vec<Break>) {
     row.breaks.extend(breaks);
     row.breaks.sort_by(|a, b| a[0].lateral.total_cmp(&b[0].lateral));
+}
+
+/// Adds jumps of places of contact to the rows. Tells whether there are any.
+fn add_jumps(
+    system: &WheelsetOnTrack,
+    asked: &Asked,
+    samples: &[Vec<State>],
+    rows: &mut [Row],
+) -> Result<bool> {
+    let mut some = false;
+    for (samples, row) in samples.iter().zip(rows) {
+        let mut sampler = Sampler::new(system, asked, row.yaw);
+        if let Some(jump) = jump(&mut sampler, samples, &row.breaks)? {
+            add(row, vec![jump]);
+            some = true;
+        }
+    }
+    Ok(some)
 }
 
 /// Finds a jump of a place of contact between the samples: the largest change, halved to the width of a break.
@@ -202,15 +215,27 @@ impl Fitted {
             coefficients.iter_mut().flatten().for_each(|row| row[q] = f64::NAN);
         }
         let mut fitted = Self { cell, coefficients, errors: [0.0; MOST] };
-        // The largest share of a tolerance at the nodes of one kind between those of the other: of the displacement, of the yaw.
+        let [along, over_yaw] = fitted.compare(quantities, curves, samples, rows);
+        (fitted, over_yaw > along)
+    }
+
+    /// Finds the errors at all samples. Gives the largest share of a tolerance between nodes of the displacement, and of the yaw, at nodes of
+    /// the other.
+    fn compare(
+        &mut self,
+        quantities: &[Quantity],
+        curves: &[Curve; 2],
+        samples: &[Vec<State>],
+        rows: &[Row],
+    ) -> [f64; 2] {
+        let most = 1.0 + MOST_STRETCHED;
         let mut shares = [0.0_f64; 2];
         for (r, (samples, row)) in samples.iter().zip(rows).enumerate() {
-            let (powers, ends) = (fitted.along(row.yaw), curves.map(|curve| curve.at(row.yaw)));
+            let (powers, ends) = (self.along(row.yaw), curves.map(|curve| curve.at(row.yaw)));
             for (k, sample) in samples.iter().enumerate() {
-                let most = 1.0 + MOST_STRETCHED;
                 let values = at(&powers, share(ends, sample.lateral).clamp(-most, most));
                 let found = values.iter().zip(&sample.values).map(|(p, value)| (p - value).abs());
-                for ((error, found), quantity) in fitted.errors.iter_mut().zip(found).zip(quantities) {
+                for ((error, found), quantity) in self.errors.iter_mut().zip(found).zip(quantities) {
                     // `max` leaves out what is not a number: quantities that do not exist.
                     *error = error.max(found);
                     let share = found / quantity.tolerance;
@@ -222,7 +247,7 @@ impl Fitted {
                 }
             }
         }
-        (fitted, shares[1] > shares[0])
+        shares
     }
 
     /// Gives the polynomials along the displacement under a yaw \[rad\].

@@ -5,6 +5,7 @@
 //! end where contact hops to another place, where it crosses a joint, where a wheel leaves its rail, and where a polynomial would err
 //! by more than the tolerance: see [`crate::docs::tables`].
 
+mod about;
 mod asked;
 mod breaks;
 mod build;
@@ -18,10 +19,11 @@ mod region;
 mod state;
 mod tree;
 
+pub use about::About;
 pub use asked::{Asked, Pressed};
 pub use build::build;
 pub use cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
-pub use contact_table::{About, ContactTable};
+pub use contact_table::ContactTable;
 pub use curve::Curve;
 pub use quantity::{Needs, Quantity, TOLERANCE_LENGTH};
 pub use tree::{Fork, Part};

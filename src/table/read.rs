@@ -2,8 +2,8 @@
 
 use std::str::Lines;
 
+use super::about::About;
 use super::cell::{Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
-use super::contact_table::About;
 use super::curve::Curve;
 use super::fit::exists;
 use super::quantity::{MOST, Quantity, Values};

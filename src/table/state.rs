@@ -204,6 +204,12 @@ impl State {
         self.places.iter().zip(&other.places).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
+    /// Returns what decides which quantities exist, and what they are of: what each side lacks, and which axis of its ellipse is the long
+    /// one; `None` where a wheel is off its rail.
+    pub fn exists(&self) -> Option<([Lacks; 2], [bool; 2])> {
+        self.topology.map(|topology| (topology.lacks, topology.along))
+    }
+
     /// Returns the largest slope of a place of contact.
     pub fn steepest(&self) -> f64 {
         self.slopes[0].abs().max(self.slopes[1].abs())

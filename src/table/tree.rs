@@ -1,9 +1,8 @@
 //! The tree by which the cell of a lateral displacement and a yaw is found.
 
+use super::about::About;
 use super::cell::{Beginning, Cell};
-use super::contact_table::About;
 use super::curve::Curve;
-use super::fit::Fitted;
 use super::quantity::Values;
 use super::region::Branch;
 
@@ -33,21 +32,9 @@ pub(super) struct Tree {
     pub curves: Vec<Curve>,
     pub forks: Vec<Fork>,
     pub cells: Vec<Cell>,
-    /// Coefficient number k of the powers of t, of number j of those of u, of quantity q in cell c: at
-    /// ((c · powers of u + j) · [`COEFFICIENTS`](super::COEFFICIENTS) + k) · quantities + q with as many values a row as `Values` has; not a
-    /// number where the quantity does not exist.
+    /// Of each cell the coefficients of u^j tᵏ of all quantities, at j · [`COEFFICIENTS`](super::COEFFICIENTS) + k; none where nothing
+    /// touches, not a number where a quantity does not exist.
     pub coefficients: Vec<Vec<Values>>,
-}
-
-impl Branch {
-    /// Lists the cells in order.
-    pub(super) fn cells(&self) -> Vec<&Fitted> {
-        match self {
-            Self::Cell(cell) => vec![cell],
-            Self::Along(parts, _) => parts.iter().flat_map(Self::cells).collect(),
-            Self::Yaw(_, parts) => parts.iter().flat_map(Self::cells).collect(),
-        }
-    }
 }
 
 impl Tree {
@@ -59,25 +46,23 @@ impl Tree {
         tree
     }
 
-    /// Makes the tree of a table under one yaw from its cells in ascending order, with their ends \[mm\] and how they begin.
+    /// Makes the tree of a table under one yaw from its cells in ascending order, with their ends \[mm\] and how they begin; without
+    /// coefficients.
     pub fn of_cells(cells: Vec<([f64; 2], Beginning, Cell)>, yaw: [f64; 2]) -> Self {
         let mut tree = Self::default();
-        let mut parts = Vec::new();
-        let last = cells.last().map(|([_, to], ..)| *to);
-        let begins: Vec<(f64, Beginning)> =
-            cells.iter().map(|([from, _], begins, _)| (*from, *begins)).chain(last.map(|to| (to, Beginning::Edge))).collect();
-        let curves: Vec<usize> =
-            begins.into_iter().map(|(y, kind)| tree.curve(Curve::constant(y, yaw, kind))).collect();
-        for (c, (_, _, cell)) in cells.into_iter().enumerate() {
-            parts.push(Part::Cell(tree.cells.len()));
-            tree.cells.push(Cell { curves: [curves[c], curves[c + 1]], ..cell });
+        let last = cells.last().map(|([_, to], ..)| (*to, Beginning::Edge));
+        let begins = cells.iter().map(|([from, _], begins, _)| (*from, *begins));
+        for (y, kind) in begins.chain(last) {
+            tree.curve(Curve::constant(y, yaw, kind));
         }
-        if parts.len() > 1 {
-            let inner = &curves[1..curves.len() - 1];
-            tree.fork_row(parts.len(), inner, &mut |tree, at| {
-                let _ = tree;
-                parts[at]
-            });
+        tree.cells = cells
+            .into_iter()
+            .enumerate()
+            .map(|(c, (.., cell))| Cell { curves: [c, c + 1], ..cell })
+            .collect();
+        let curves: Vec<usize> = (1..tree.cells.len()).collect();
+        if !curves.is_empty() {
+            tree.fork_row(tree.cells.len(), &curves, &mut |_, cell| Part::Cell(cell));
         }
         tree
     }
@@ -120,7 +105,12 @@ impl Tree {
     }
 
     /// Adds the forks between so many parts in a row, with the curves between them, and the parts by `add`.
-    fn fork_row(&mut self, count: usize, curves: &[usize], add: &mut dyn FnMut(&mut Self, usize) -> Part) -> Part {
+    fn fork_row(
+        &mut self,
+        count: usize,
+        curves: &[usize],
+        add: &mut dyn FnMut(&mut Self, usize) -> Part,
+    ) -> Part {
         fn among(
             tree: &mut Tree,
             [from, to]: [usize; 2],

@@ -101,13 +101,21 @@ fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
         let touch = touch.unwrap_or_else(|| panic!("{name}: no contact at {lateral} mm, {yaw} rad"));
         for (q, quantity) in quantities.iter().enumerate() {
             let direct = found(quantity, touch.roll, &touch.sides, case.question().modulus());
-            assert_eq!(values[q].is_nan(), direct.is_nan(), "{name}: {quantity:?} at {lateral} mm, {yaw} rad: {direct}");
+            assert_eq!(
+                values[q].is_nan(),
+                direct.is_nan(),
+                "{name}: {quantity:?} at {lateral} mm, {yaw} rad: {direct}"
+            );
             if direct.is_nan() {
                 continue;
             }
             exist += 1;
             let share = (values[q] - direct).abs() / quantity.error;
-            assert!(share <= 1.0, "{name}: {quantity:?} at {lateral} mm, {yaw} rad: {} for {direct}", values[q]);
+            assert!(
+                share <= 1.0,
+                "{name}: {quantity:?} at {lateral} mm, {yaw} rad: {} for {direct}",
+                values[q]
+            );
             shares[q] = shares[q].max(share);
         }
     }

@@ -38,7 +38,8 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
     let lateral = range("--lateral", &arguments.lateral, "FROM:TO in mm", "-9:9")?;
-    let yaw = arguments.yaw.as_ref().map(|yaw| range("--yaw", yaw, "FROM:TO in rad", "-0.02:0.02")).transpose()?;
+    let yaw =
+        arguments.yaw.as_ref().map(|yaw| range("--yaw", yaw, "FROM:TO in rad", "-0.02:0.02")).transpose()?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
     let default = || PathBuf::from("output").join(format!("{name}-table"));
     let target = arguments.out.clone().unwrap_or_else(default);
@@ -71,7 +72,8 @@ fn about(table: &ContactTable) -> String {
     let middle = table.about().yaw[0] + (table.about().yaw[1] - table.about().yaw[0]) / 2.0;
     let [hops, joints] = [(Beginning::Hop, "hop"), (Beginning::Joint, "joint")]
         .map(|(kind, name)| counted(table.places(kind, middle).len(), name));
-    let under = if table.about().over_yaw() { format!(" under a yaw of {middle} rad") } else { String::new() };
+    let under =
+        if table.about().over_yaw() { format!(" under a yaw of {middle} rad") } else { String::new() };
     let mut text = format!("{}, {hops}, {joints}{under}\n", counted(table.cells().len(), "cell"));
     for quantity in table.quantities() {
         let (name, side) = (quantity.name, quantity.side());
@@ -85,11 +87,8 @@ fn about(table: &ContactTable) -> String {
 
 /// Says what a user should know before using the table.
 fn remarks(table: &ContactTable) -> Vec<String> {
-    let about = table.about();
-    let ends = &about.yaw[..1 + usize::from(about.over_yaw())];
-    let off = ends.iter().flat_map(|&yaw| table.off_rail(yaw).into_iter().map(move |range| (yaw, range)));
-    let missing = off.map(|(yaw, [from, to])| {
-        let under = if about.over_yaw() { format!(" under a yaw of {yaw} rad") } else { String::new() };
+    let under = if table.about().over_yaw() { " under some yaws" } else { "" };
+    let missing = table.off_rail_somewhere().into_iter().map(|[from, to]| {
         format!(
             "no contact from {from} to {to} mm{under}: a wheel is off its rail, and the table has nothing there"
         )

@@ -19,10 +19,9 @@ const LARGEST: usize = 1 << 30;
 
 /// Tabulate the contact of a scene's wheelset over a range of lateral displacements in mm, as polynomials with a stated error.
 ///
-/// `lateral` is the range, `yaw` a range in rad, without which the table is under the yaw of the scene; `tolerance` is that of lengths in mm;
-/// the roll is that of the scene. `hertz` adds Hertz's ellipse, approach
-/// and largest pressure under the scene's load or approach. `out` is a folder that gets the table as `table.wrp`, `table.nc` and
-/// `table.csv`.
+/// `lateral` is the range, `yaw` a range in rad, without which the table is under the yaw of the scene; `tolerance` is that of lengths
+/// in mm; the roll is that of the scene. `hertz` adds Hertz's ellipse, approach and largest pressure under the scene's load or approach.
+/// `out` is a folder that gets the table as `table.wrp`, `table.nc` and `table.csv`.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp
@@ -68,8 +67,8 @@ pub(crate) fn table(
 
 /// A contact table: places, angles, radii and curvatures of both wheels over the lateral displacement, and over yaw.
 ///
-/// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)`, or `table(lateral, yaw)` over yaw, gives the quantities of the wheelset by their names, and
-/// under "left" and "right" those of each side, an array each; what does not exist is NaN.
+/// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)`, or `table(lateral, yaw)` over yaw, gives the quantities
+/// of the wheelset by their names, and under "left" and "right" those of each side, an array each; what does not exist is NaN.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp

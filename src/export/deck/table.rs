@@ -75,13 +75,9 @@ fn put_tree(text: &mut String, table: &ContactTable) {
 /// Explains the file.
 fn comments(table: &ContactTable, title: &str) -> Vec<String> {
     let about = table.about();
-    let place = |yaw: f64, [from, to]: [f64; 2]| {
-        let at = if about.over_yaw() { format!("yaw {yaw}: ") } else { String::new() };
-        format!("off the rail, without values: {at}{from} to {to}")
-    };
-    let ends = &about.yaw[..about.over_yaw() as usize + 1];
-    let off = ends.iter().flat_map(|&yaw| table.off_rail(yaw).into_iter().map(move |range| (yaw, range)));
-    let off: Vec<String> = off.map(|(yaw, range)| place(yaw, range)).collect();
+    let under = if about.over_yaw() { " under some yaws" } else { "" };
+    let off = |[from, to]: [f64; 2]| format!("off the rail, without values{under}: {from} to {to}");
+    let off = table.off_rail_somewhere().into_iter().map(off);
     let before = [
         format!("title: {title}"),
         format!("written by wheelrail {}: contact of a wheelset over y", env!("CARGO_PKG_VERSION")),
@@ -94,7 +90,10 @@ fn comments(table: &ContactTable, title: &str) -> Vec<String> {
     let behind = [
         "off its rail and no coefficients follow; a quantity exists where its needs".into(),
         "(0 contact 1 curvatures 2 ellipse) + lacks of its side are at most 2".into(),
-        format!("largest_error: twice the largest difference from direct searches; {:e} mm", about.beside_curves()),
+        format!(
+            "largest_error: twice the largest difference from direct searches; {:e} mm",
+            about.beside_curves()
+        ),
         "around hops and joints are left out".into(),
         format!("tolerance: angles over the nominal radius, curvatures over ({TOLERANCE_LENGTH} mm)^2,"),
         format!("approach x {TOLERANCE_LENGTH} mm / radius, pressures x 1000 N/mm2 / {TOLERANCE_LENGTH} mm"),
