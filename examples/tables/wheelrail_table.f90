@@ -22,15 +22,15 @@ module wheelrail_table
   end type
 
   type :: table_curve
-    integer :: kind                     ! 0 smooth, 1 joint, 2 hop, 3 edge
+    integer :: kind = 3                 ! 0 smooth, 1 joint, 2 hop, 3 edge
     real(dp) :: yaw(2) = 0              ! rad
     real(dp) :: c(n_yaw_coefficients) = 0   ! mm: lateral displacement over u, from -1 to 1 between the yaws
   end type
 
   type :: table_fork
-    integer :: part(2)                  ! below, above: n > 0 is fork n, n < 0 is cell -n
-    integer :: curve                    ! 0 where a yaw divides
-    real(dp) :: yaw
+    integer :: part(2) = 0              ! below, above: n > 0 is fork n, n < 0 is cell -n
+    integer :: curve = 0                ! 0 where a yaw divides
+    real(dp) :: yaw = 0
   end type
 
   type :: contact_table

@@ -200,6 +200,7 @@ static const char *wr_table_rest_(wr_table *table, FILE *file)
             table->curve[c].c[0] = three[0];
             table->curve[c].kind = cell->begins;
             table->curve[c + 1].c[0] = three[1];
+            table->curve[c + 1].kind = 3;
         }
         for (q = 0; q < table->quantities; q++) {
             const wr_quantity *quantity = &table->quantity[q];

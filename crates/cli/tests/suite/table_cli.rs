@@ -52,6 +52,7 @@ fn searched(folder: &Path, scene: &str, places: &[[f64; 2]]) -> Vec<BTreeMap<(St
             out.push(BTreeMap::new());
         }
         let number = |name: &str| row[column(name)].parse::<f64>().unwrap_or(f64::NAN);
+        let yaw = places[out.len() - 1][1];
         let found = out.last_mut().unwrap();
         found.insert(("roll_rad".into(), "wheelset".into()), number("roll_rad"));
         let same = [
@@ -70,7 +71,10 @@ fn searched(folder: &Path, scene: &str, places: &[[f64; 2]]) -> Vec<BTreeMap<(St
         });
         let (skew, roll) = (number("skew_rad"), if side == "left" { -1.0 } else { 1.0 } * number("roll_rad"));
         let [rail, wheel] = ["rail_curvature_per_mm", "wheel_curvature_per_mm"].map(number);
-        let around = (number("contact_angle_rad") + roll).cos() / number("rolling_radius_mm");
+        // The normal, which is across the rail, is at this angle from the plane across the axle, of yaw and roll.
+        let (across, up) = number("contact_angle_rad").sin_cos();
+        let along_axle = across * yaw.cos() * roll.cos() + up * roll.sin();
+        let around = (1.0 - along_axle * along_axle).sqrt() / number("rolling_radius_mm");
         let (sin, cos) = skew.sin_cos();
         let smooth = if row[column("kink")] == "0" { 1.0 } else { f64::NAN };
         let form = [
@@ -95,7 +99,7 @@ fn compare(
 ) {
     for (q, quantity) in table.quantities().iter().enumerate() {
         let key = (quantity.name.to_string(), quantity.side().to_string());
-        // The angle of the wheel's profile, which the curvatures depend on, is not in the table of a sweep: without yaw it is this.
+        // The angle of the wheel's profile, which the curvatures depend on, is not in the table of a sweep: it follows from others to this.
         let slack = if quantity.name.ends_with("_per_mm") { 1e-8 } else { 0.0 };
         for (row, found) in rows.iter().zip(direct) {
             let Some(value) = found.get(&key) else { continue };
