@@ -13,12 +13,19 @@ const FILES: [&str; 3] = ["table.wrp", "table.nc", "table.csv"];
 pub const TABLE_FOLDER: Names =
     Names { marker: FILES[0], is_file: |name| FILES.contains(&name), is_part: |_| false };
 
-/// Tabulates the contact of a case's wheelset over a range of lateral displacements \[mm\], with its yaw and roll; `tolerance` is that of
-/// lengths \[mm\]. `hertz` adds Hertz's ellipses under the case's approach or load, as if the lowest place carried its wheel alone.
+/// Tabulates the contact of a case's wheelset over a range of lateral displacements \[mm\] and of yaws \[rad\], without which it is under
+/// the case's yaw, with the case's roll; `tolerance` is that of lengths \[mm\]. `hertz` adds Hertz's ellipses under the case's approach or
+/// load, as if the lowest place carried its wheel alone.
 ///
 /// # Errors
 /// A single wheel; a roll by the wheels' loads; ellipses without an approach or load; the errors of [`build`].
-pub fn table(case: &Case, lateral: [f64; 2], tolerance: f64, hertz: bool) -> Result<ContactTable> {
+pub fn table(
+    case: &Case,
+    lateral: [f64; 2],
+    yaw: Option<[f64; 2]>,
+    tolerance: f64,
+    hertz: bool,
+) -> Result<ContactTable> {
     let Place::Wheelset { system, position } = &case.standing.place else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("table", "a single wheel", expected, "a table is of a wheelset on its track"));
@@ -44,7 +51,8 @@ pub fn table(case: &Case, lateral: [f64; 2], tolerance: f64, hertz: bool) -> Res
         None => None,
         Some(by) => Some(([true, false].map(|left| pressed_by(by, left)), modulus)),
     };
-    let asked = Asked { lateral, yaw: position.yaw, roll: position.roll, tolerance, pressed };
+    let yaw = yaw.unwrap_or([position.yaw; 2]);
+    let asked = Asked { lateral, yaw, roll: position.roll, tolerance, pressed };
     build(system, &asked)
 }
 

@@ -43,25 +43,45 @@ pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
 /// Writes `table.csv`: a row for each cell and each quantity that exists there, with the cell's number from 1, its ends, the codes of
 /// how it begins, the quantity, its stated error over the whole table, and the coefficients of 1, t, … t⁸. A cell in which a wheel is
 /// off its rail has one row without a quantity.
+///
+/// Over yaw a row has the yaws of the cell in place of its ends, and there is one for each power j of u. The ends are the first two
+/// quantities of each cell, `from_mm` and `to_mm` of the wheelset, with the same u from −1 to 1 over the yaws of the cell.
 pub fn table_csv(table: &ContactTable) -> String {
-    let powers: Vec<String> = (0..COEFFICIENTS).map(|k| format!("c{k}")).collect();
-    let mut text = format!("cell,from_mm,to_mm,begins,side,quantity,error,{}\n", powers.join(","));
+    let about = table.about();
+    let (ends, power) =
+        if about.over_yaw() { ("yaw_from_rad,yaw_to_rad", ",j") } else { ("from_mm,to_mm", "") };
+    let powers: String = (0..COEFFICIENTS).map(|k| format!(",c{k}")).collect();
+    let mut text = format!("cell,{ends},begins,side,quantity,error{power}{powers}\n");
     for (c, cell) in table.cells().iter().enumerate() {
-        let [from, to] = cell.lateral;
-        let place = format!("{},{from:?},{to:?},{}", c + 1, cell.begins.code());
-        if !cell.touches {
+        let [from, to] = if about.over_yaw() { cell.yaw } else { table.ends(c, cell.yaw[0]) };
+        let place = format!("{},{from:?},{to:?},{}", c + 1, table.begins(c).code());
+        let mut put = |quantity: &str, error: f64, j: usize, coefficients: &[f64]| {
+            let _ = write!(text, "{place},{quantity},{error:?}");
+            if about.over_yaw() {
+                let _ = write!(text, ",{j}");
+            }
+            coefficients.iter().for_each(|c| {
+                let _ = write!(text, ",{c:?}");
+            });
+            text.push('\n');
+        };
+        if about.over_yaw() {
+            for (name, curve) in ["wheelset,from_mm", "wheelset,to_mm"].into_iter().zip(cell.curves) {
+                for (j, y) in table.curves()[curve].over(cell.yaw).into_iter().enumerate() {
+                    let mut coefficients = [0.0; COEFFICIENTS];
+                    coefficients[0] = y;
+                    put(name, about.beside_curves(), j, &coefficients);
+                }
+            }
+        } else if !cell.touches {
             let _ = writeln!(text, "{place},,,{}", ",".repeat(COEFFICIENTS));
+            continue;
         }
         for (q, quantity) in table.quantities().iter().enumerate() {
-            let coefficients = table.coefficients(c, q);
-            if coefficients[0].is_nan() {
-                continue;
+            for j in (0..about.yaw_coefficients()).filter(|j| !table.coefficients(c, q, *j)[0].is_nan()) {
+                let name = format!("{},{}", quantity.side(), quantity.name);
+                put(&name, quantity.error, j, &table.coefficients(c, q, j));
             }
-            let _ = write!(text, "{place},{},{},{:?}", quantity.side(), quantity.name, quantity.error);
-            for c in coefficients {
-                let _ = write!(text, ",{c:?}");
-            }
-            text.push('\n');
         }
     }
     text

@@ -9,7 +9,7 @@
 use super::block::{Block, put_f64_be};
 use super::model::{GridFields, Header};
 use crate::error::Result;
-use crate::table::{COEFFICIENTS, ContactTable, Lacks};
+use crate::table::{About, COEFFICIENTS, Cell, ContactTable, Lacks};
 use serde_json::json;
 use std::io::{self, Write};
 
@@ -213,30 +213,33 @@ const NAME: usize = 24;
 /// `touches(cell)` and `lacks(cell, side)` with the codes of the text table; `quantity_name(quantity, name)`,
 /// `quantity_side(quantity, name)`, `needs(quantity)`, `tolerance(quantity)` and `error(quantity)` in each quantity's unit;
 /// `coefficients(cell, quantity, power)` of 1, t, … t⁸, not numbers where a quantity does not exist.
+///
+/// Over yaw there is also the dimension yaw_power: `lateral(cell, end, yaw_power)` and `coefficients(cell, quantity, yaw_power, power)`
+/// have the coefficients of u^j and u^j tᵏ, with u from −1 to 1 over the yaws of the cell, `yaw(cell, end)` \[rad\].
 pub fn table_nc(table: &ContactTable, title: &str) -> Vec<u8> {
-    let sizes = [table.cells().len(), table.quantities().len(), COEFFICIENTS, 2, 2, NAME];
+    let about = table.about();
+    let all =
+        [table.cells().len(), table.quantities().len(), COEFFICIENTS, 2, 2, NAME, about.yaw_coefficients()];
+    let sizes = &all[..6 + usize::from(about.over_yaw())];
     let mut bytes = b"CDF\x01".to_vec();
     put(&mut bytes, 0);
     put(&mut bytes, DIMENSION);
     put(&mut bytes, sizes.len() as u32);
-    for (name, size) in ["cell", "quantity", "power", "side", "end", "name"].into_iter().zip(sizes) {
+    let names = ["cell", "quantity", "power", "side", "end", "name", "yaw_power"];
+    for (name, size) in names.into_iter().zip(sizes) {
         put_name(&mut bytes, name);
-        put(&mut bytes, size as u32);
+        put(&mut bytes, *size as u32);
     }
-    put(&mut bytes, ATTRIBUTE);
-    put(&mut bytes, 5);
-    put_text(&mut bytes, "title", title);
-    put_text(&mut bytes, "program", concat!("wheelrail ", env!("CARGO_PKG_VERSION")));
-    put_double(&mut bytes, "yaw_rad", table.yaw());
-    put_double(&mut bytes, "nominal_radius_mm", table.radius());
-    put_double(&mut bytes, "tolerance_mm", table.tolerance());
+    put_about(&mut bytes, about, title);
     let variable = |name, dimensions: &'static [u32], kind| {
         let count: usize = dimensions.iter().map(|&dimension| sizes[dimension as usize]).product();
         let size = (count * if kind == DOUBLE { 8 } else { 1 }) as u64;
         Variable { name, dimensions, attributes: Vec::new(), attribute_count: 0, kind, size }
     };
-    let variables = [
-        variable("lateral", &[0, 4], DOUBLE),
+    let [lateral, coefficients]: [&[u32]; 2] =
+        if about.over_yaw() { [&[0, 4, 6], &[0, 1, 6, 2]] } else { [&[0, 4], &[0, 1, 2]] };
+    let mut variables = vec![
+        variable("lateral", lateral, DOUBLE),
         variable("begins", &[0], BYTE),
         variable("touches", &[0], BYTE),
         variable("lacks", &[0, 3], BYTE),
@@ -245,24 +248,47 @@ pub fn table_nc(table: &ContactTable, title: &str) -> Vec<u8> {
         variable("needs", &[1], BYTE),
         variable("tolerance", &[1], DOUBLE),
         variable("error", &[1], DOUBLE),
-        variable("coefficients", &[0, 1, 2], DOUBLE),
+        variable("coefficients", coefficients, DOUBLE),
     ];
+    if about.over_yaw() {
+        variables.push(variable("yaw", &[0, 4], DOUBLE));
+    }
     let begin = (bytes.len() + entries(&variables, false, 0).len()) as u64;
     bytes.extend(entries(&variables, false, begin));
     put_table(&mut bytes, table);
     bytes
 }
 
+/// Appends the attributes of a table.
+fn put_about(bytes: &mut Vec<u8>, about: About, title: &str) {
+    let [first, last] = about.yaw;
+    let yaws: &[_] = if about.over_yaw() {
+        &[("yaw_from_rad", first), ("yaw_to_rad", last)]
+    } else {
+        &[("yaw_rad", first)]
+    };
+    put(bytes, ATTRIBUTE);
+    put(bytes, 5 + yaws.len() as u32);
+    put_text(bytes, "title", title);
+    put_text(bytes, "program", concat!("wheelrail ", env!("CARGO_PKG_VERSION")));
+    yaws.iter().for_each(|(name, yaw)| put_double(bytes, name, *yaw));
+    put_double(bytes, "nominal_radius_mm", about.radius);
+    put_double(bytes, "tolerance_mm", about.tolerance);
+    put_double(bytes, "beside_curves_mm", about.beside_curves());
+}
+
 /// Appends the data of a table, in the order of its variables.
 fn put_table(bytes: &mut Vec<u8>, table: &ContactTable) {
     let (cells, quantities) = (table.cells(), table.quantities());
+    let (curves, powers) = (table.curves(), table.about().yaw_coefficients());
     let text = |text: &str| {
         let mut name = [0; NAME];
         name.iter_mut().zip(text.bytes()).for_each(|(place, byte)| *place = byte);
         name
     };
-    put_doubles(bytes, cells.iter().flat_map(|cell| cell.lateral));
-    put_codes(bytes, cells.iter().map(|cell| cell.begins.code()));
+    let ends = |cell: &Cell| cell.curves.map(|curve| curves[curve].over(cell.yaw));
+    put_doubles(bytes, cells.iter().flat_map(ends).flat_map(|end| end.into_iter().take(powers)));
+    put_codes(bytes, (0..cells.len()).map(|cell| table.begins(cell).code()));
     put_codes(bytes, cells.iter().map(|cell| u8::from(cell.touches)));
     put_codes(bytes, cells.iter().flat_map(|cell| cell.lacks.map(Lacks::code)));
     put_codes(bytes, quantities.iter().flat_map(|quantity| text(quantity.name)));
@@ -270,8 +296,12 @@ fn put_table(bytes: &mut Vec<u8>, table: &ContactTable) {
     put_codes(bytes, quantities.iter().map(|quantity| quantity.needs.code()));
     put_doubles(bytes, quantities.iter().map(|quantity| quantity.tolerance));
     put_doubles(bytes, quantities.iter().map(|quantity| quantity.error));
-    let of = |cell| (0..quantities.len()).flat_map(move |quantity| table.coefficients(cell, quantity));
+    let row = |cell, quantity| (0..powers).flat_map(move |j| table.coefficients(cell, quantity, j));
+    let of = |cell| (0..quantities.len()).flat_map(move |quantity| row(cell, quantity));
     put_doubles(bytes, (0..cells.len()).flat_map(of));
+    if table.about().over_yaw() {
+        put_doubles(bytes, cells.iter().flat_map(|cell| cell.yaw));
+    }
 }
 
 fn put_doubles(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = f64>) {

@@ -16,8 +16,8 @@ pub enum Pressed {
 pub struct Asked {
     /// Range of the lateral displacement \[mm\], + to the right.
     pub lateral: [f64; 2],
-    /// Yaw \[rad\] of all displacements.
-    pub yaw: f64,
+    /// Range of the yaw \[rad\]: with equal ends the one yaw of all displacements.
+    pub yaw: [f64; 2],
     /// How the roll is found.
     pub roll: Roll,
     /// Tolerance of lengths \[mm\]; the tolerances of other quantities follow from it: [`Quantity::tolerance`](super::Quantity::tolerance).

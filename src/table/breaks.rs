@@ -31,13 +31,27 @@ const MOST: usize = 10_000;
 /// A break: the states on both sides of it.
 pub(super) type Break = [State; 2];
 
-/// Finds the states at both ends of the range, and all breaks in it.
-pub(super) fn breaks(system: &WheelsetOnTrack, asked: &Asked) -> Result<(Break, Vec<Break>)> {
-    let [from, to] = asked.lateral;
+/// A range of displacements under one yaw, with all breaks in it.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    /// The yaw \[rad\].
+    pub yaw: f64,
+    /// The states at both ends.
+    pub ends: Break,
+    /// The breaks between them, in ascending order.
+    pub breaks: Vec<Break>,
+}
+
+/// Finds the states at both ends of a range \[mm\] under a yaw \[rad\], and all breaks in it. A range without width is one state.
+pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, [from, to]: [f64; 2]) -> Result<Row> {
+    if from >= to {
+        let state = Sampler::new(system, asked, yaw).at(from + (to - from) / 2.0, 0.0)?;
+        return Ok(Row { yaw, ends: [state.clone(), state], breaks: Vec::new() });
+    }
     let steps = ((to - from) / STEP).ceil().max(1.0) as usize;
     let at = |k: usize| if k == steps { to } else { from + (to - from) * (k as f64 / steps as f64) };
     let chunk = |first: usize| -> Result<(Option<State>, State, Vec<Break>)> {
-        let mut sampler = Sampler::new(system, asked);
+        let mut sampler = Sampler::new(system, asked, yaw);
         let all: Vec<f64> = (first..=(first + CHUNK).min(steps)).map(at).collect();
         let states = states(&mut sampler, &all)?;
         let mut found = Vec::new();
@@ -57,8 +71,8 @@ pub(super) fn breaks(system: &WheelsetOnTrack, asked: &Asked) -> Result<(Break, 
         end = Some(last);
         breaks.extend(found);
     }
-    let ends = begin.zip(end).map(|(begin, end)| [begin, end]);
-    Ok((ends.ok_or_else(no_range)?, breaks))
+    let ends = begin.zip(end).map(|(begin, end)| [begin, end]).ok_or_else(no_range)?;
+    Ok(Row { yaw, ends, breaks })
 }
 
 fn no_range() -> Error {
@@ -124,28 +138,8 @@ pub(super) fn divide(
     divide(sampler, &middle, to, breaks)
 }
 
-/// A stretch between two breaks, over which the same elements touch.
-pub(super) struct Stretch {
-    pub ends: Break,
-    pub begins: Beginning,
-}
-
-/// Cuts a range, which begins in this way, at its breaks.
-pub(super) fn stretches([begin, end]: Break, begins: Beginning, breaks: Vec<Break>) -> Vec<Stretch> {
-    let mut stretches = Vec::with_capacity(breaks.len() + 1);
-    let (mut from, mut begins) = (begin, begins);
-    for at in breaks {
-        let kind = kind_of(&at);
-        let [to, next] = at;
-        stretches.push(Stretch { ends: [from, to], begins });
-        (from, begins) = (next, kind);
-    }
-    stretches.push(Stretch { ends: [from, end], begins });
-    stretches
-}
-
 /// Tells what happens at a break.
-fn kind_of([before, after]: &Break) -> Beginning {
+pub(super) fn kind_of([before, after]: &Break) -> Beginning {
     if before.topology.is_none() || after.topology.is_none() {
         return Beginning::Edge;
     }

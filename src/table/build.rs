@@ -1,14 +1,12 @@
-//! Builds a table: finds the breaks between branches, then fits polynomials between them.
+//! Builds a table: divides the range into cells with polynomials, and states what they err by.
 
-use rayon::prelude::*;
-
+use super::about::About;
 use super::asked::Asked;
-use super::breaks::{breaks, stretches};
-use super::cell::{Beginning, COEFFICIENTS};
 use super::contact_table::ContactTable;
-use super::fit::{Fitted, MARGIN, fit};
-use super::quantity::Quantity;
-use super::state::Sampler;
+use super::fit::MARGIN;
+use super::quantity::{MOST, Quantity};
+use super::region::Divider;
+use super::tree::Tree;
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::search::WheelsetOnTrack;
 
@@ -34,31 +32,23 @@ pub fn build(system: &WheelsetOnTrack, asked: &Asked) -> Result<ContactTable> {
     let radius = system.right().wheelset().radius;
     let pressed = asked.pressed.is_some();
     let mut quantities = Quantity::all(asked.tolerance, radius, pressed);
-    let (ends, breaks) = breaks(system, asked)?;
-    let stretches = stretches(ends, Beginning::Edge, breaks);
-    let fitted = stretches.par_iter().map(|stretch| {
-        let mut sampler = Sampler::new(system, asked);
-        fit(&mut sampler, &quantities, stretch)
+    let branch = Divider::new(system, asked, &quantities).whole()?;
+    let about = About { lateral: asked.lateral, yaw: asked.yaw, radius, tolerance: asked.tolerance };
+    let mut errors = [0.0_f64; MOST];
+    branch.cells().iter().for_each(|fitted| {
+        errors.iter_mut().zip(fitted.errors).for_each(|(error, found)| *error = error.max(MARGIN * found));
     });
-    let cells: Vec<Fitted> = fitted.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
-    if cells.iter().all(|cell| !cell.cell.touches) {
+    for (quantity, error) in quantities.iter_mut().zip(errors) {
+        quantity.error = quantity.error.max(error);
+    }
+    let table = ContactTable::of(about, quantities, Tree::of(branch, about))?;
+    if table.cells().iter().all(|cell| !cell.touches) {
         let [from, to] = asked.lateral;
         let found = format!("no contact from {from} to {to} mm");
         let error = Error::new("table: lateral", found, "wheels over their rails", "take another range");
         return Err(error.of_kind(ErrorKind::NoContact));
     }
-    for fitted in &cells {
-        for (quantity, error) in quantities.iter_mut().zip(fitted.errors) {
-            quantity.error = quantity.error.max(MARGIN * error);
-        }
-    }
-    let count = quantities.len();
-    let mut coefficients = Vec::with_capacity(cells.len() * COEFFICIENTS * count);
-    for fitted in &cells {
-        fitted.coefficients.iter().for_each(|row| coefficients.extend_from_slice(&row[..count]));
-    }
-    let cells = cells.iter().map(|fitted| fitted.cell).collect();
-    ContactTable::of((asked.lateral, asked.yaw, radius, asked.tolerance), quantities, cells, coefficients)
+    Ok(table)
 }
 
 fn check(system: &WheelsetOnTrack, asked: &Asked) -> Result<()> {
@@ -68,6 +58,13 @@ fn check(system: &WheelsetOnTrack, asked: &Asked) -> Result<()> {
     if from >= to || to - from > WIDEST {
         let expected = format!("FROM < TO, at most {WIDEST} mm apart");
         return Err(Error::new("table: lateral", format!("{from}:{to}"), expected, "for example -9:9"));
+    }
+    let [first, last] = asked.yaw;
+    finite("table: yaw", first)?;
+    finite("table: yaw", last)?;
+    if first > last {
+        let found = format!("{first}:{last}");
+        return Err(Error::new("table: yaw", found, "FROM < TO in rad", "for example -0.02:0.02"));
     }
     let [least, most] = TOLERANCES;
     if !(least..=most).contains(&asked.tolerance) {

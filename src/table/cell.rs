@@ -1,10 +1,16 @@
-//! Cells: intervals of the lateral displacement over which nothing jumps.
+//! Cells: pieces of the plane of lateral displacement and yaw over which nothing jumps.
 
-/// Coefficients of a polynomial: its degree is 8.
+/// Coefficients of a polynomial along the lateral displacement: its degree is 8.
 pub const COEFFICIENTS: usize = 9;
+
+/// Coefficients of a polynomial along the yaw: its degree is 4.
+pub const YAW_COEFFICIENTS: usize = 5;
 
 /// Width \[mm\] to which a place is found where contact hops or crosses a joint.
 pub const BREAK: f64 = 1e-9;
+
+/// Distance \[mm\] from a curve over yaw at which one of its sides is searched for certain.
+pub(super) const INSIDE: f64 = 1e-7;
 
 /// How a cell begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,20 +57,15 @@ impl Lacks {
     }
 }
 
-/// A cell: an interval of the lateral displacement over which every quantity is one polynomial.
+/// A cell: a piece of the plane between two curves and two yaws, over which every quantity is one polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
-    /// Ends \[mm\]. The next cell begins where this one ends, or within [`BREAK`] of it at a hop, joint or edge.
-    pub lateral: [f64; 2],
-    /// How it begins.
-    pub begins: Beginning,
+    /// The yaws \[rad\] between which it lies: u is −1 at the first one, 1 at the last one.
+    pub yaw: [f64; 2],
+    /// Numbers of the curves at which it begins and ends.
+    pub curves: [usize; 2],
     /// Whether both wheels touch; where they do not, the cell has no polynomials.
     pub touches: bool,
     /// What does not exist on the left and on the right side.
     pub lacks: [Lacks; 2],
-}
-
-/// Returns where a displacement is in a cell: −1 at its beginning, 1 at its end; 0 in a cell without width.
-pub(super) fn share([from, to]: [f64; 2], lateral: f64) -> f64 {
-    if to > from { ((lateral - from) - (to - lateral)) / (to - from) } else { 0.0 }
 }

@@ -1,10 +1,15 @@
 //! The table: cells with their polynomials, and how they are looked up.
 
+use std::array::from_fn;
+
 use rayon::prelude::*;
 
-use super::cell::{Beginning, COEFFICIENTS, Cell, share};
+use super::about::About;
+use super::cell::{Beginning, COEFFICIENTS, Cell};
+use super::curve::{Curve, share};
 use super::quantity::{MOST, Quantity};
 use super::read::{Parsed, parse};
+use super::tree::{Fork, Part, Tree};
 use crate::error::{Error, Result};
 
 /// A contact table.
@@ -16,12 +21,12 @@ use crate::error::{Error, Result};
 ///
 /// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
 /// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?;
-/// let asked = Asked { lateral: [-1.0, 1.0], yaw: 0.0, roll: Roll::Solve, tolerance: 1e-3, pressed: None };
+/// let asked = Asked { lateral: [-1.0, 1.0], yaw: [0.0; 2], roll: Roll::Solve, tolerance: 1e-3, pressed: None };
 /// let table = build(&system, &asked)?;
 ///
 /// let radius = table.number("rolling_radius_mm", Some(true)).expect("a column of every table");
 /// let mut values = vec![0.0; table.quantities().len()];
-/// table.fill(0.25, &mut values);
+/// table.fill(0.25, 0.0, &mut values);
 /// let position = Position { lateral: 0.25, yaw: 0.0, roll: Roll::Solve };
 /// let mut search = system.search();
 /// let touch = search.touch(&position, &Selection { within: 0.0, apart: 0.0 })?.expect("a wheelset on its track");
@@ -31,57 +36,62 @@ use crate::error::{Error, Result};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactTable {
-    lateral: [f64; 2],
-    yaw: f64,
-    radius: f64,
-    tolerance: f64,
+    about: About,
     quantities: Vec<Quantity>,
+    curves: Vec<Curve>,
+    forks: Vec<Fork>,
     cells: Vec<Cell>,
-    /// Coefficient number k of the powers of t of quantity q in cell c, at (c · [`COEFFICIENTS`] + k) · quantities + q; not a number
-    /// where the quantity does not exist.
+    /// Coefficient number k of the powers of t, of number j of those of u, of quantity q in cell c, at
+    /// ((c · powers of u + j) · [`COEFFICIENTS`] + k) · quantities + q; not a number where the quantity does not exist.
     coefficients: Vec<f64>,
-    /// For equal parts of the range: the cell in which each begins.
-    hints: Vec<u32>,
 }
 
-/// Displacements that one thread takes at a time.
+/// Quantities that are computed together.
+const LANES: usize = 4;
+
+/// Positions that one thread takes at a time.
 const TOGETHER: usize = 4096;
 
-/// Displacements whose values are found before they are put into columns: 7 kB.
+/// Positions whose values are found before they are put into columns: 7 kB.
 const ROWS: usize = 32;
 
-/// Parts of the range for each cell, with whose help a cell is found: one or two steps from the hint are enough.
-const HINTS: usize = 4;
-
 impl ContactTable {
-    /// Joins the cells of a table, in ascending order.
+    /// Takes a tree as a table.
     ///
     /// # Errors
-    /// Cells that do not ascend or do not fill the range; another number of coefficients.
-    pub(super) fn of(
-        (lateral, yaw, radius, tolerance): ([f64; 2], f64, f64, f64),
-        quantities: Vec<Quantity>,
-        cells: Vec<Cell>,
-        coefficients: Vec<f64>,
-    ) -> Result<Self> {
+    /// Parts, curves or coefficients that do not fit each other.
+    pub(super) fn of(about: About, quantities: Vec<Quantity>, tree: Tree) -> Result<Self> {
         let wrong =
             |found: String, expected: &str| Error::new("table", found, expected, "write the table anew");
-        let ascends = cells.iter().all(|cell| cell.lateral[0] <= cell.lateral[1])
-            && cells.windows(2).all(|pair| pair[0].lateral[1] <= pair[1].lateral[0]);
-        let ends = [cells.first(), cells.last()].map(|cell| cell.map(|cell| cell.lateral));
-        let [Some([first, _]), Some([_, last])] = ends else {
+        let Tree { curves, forks, cells, coefficients: by_cell } = tree;
+        if cells.is_empty() || by_cell.len() != cells.len() {
             return Err(wrong("no cell".into(), "cells over the whole range"));
+        }
+        let known = |fork: usize, part: &Part| match *part {
+            Part::Fork(next) => next > fork && next < forks.len(),
+            Part::Cell(cell) => cell < cells.len(),
         };
-        if !ascends || first != lateral[0] || last != lateral[1] || first >= last {
-            return Err(wrong("cells out of order".into(), "ascending cells over the whole range"));
+        for (f, fork) in forks.iter().enumerate() {
+            if !fork.parts.iter().all(|part| known(f, part)) || fork.curve.is_some_and(|c| c >= curves.len())
+            {
+                return Err(wrong(format!("fork {}", f + 1), "parts and curves of the table"));
+            }
         }
-        if coefficients.len() != cells.len() * COEFFICIENTS * quantities.len() {
-            return Err(wrong(format!("{} coefficients", coefficients.len()), "9 of each quantity and cell"));
+        if let Some(c) = (0..cells.len()).find(|&c| cells[c].curves.iter().any(|k| *k >= curves.len())) {
+            return Err(wrong(format!("cell {}", c + 1), "curves of the table"));
         }
-        let mut table =
-            Self { lateral, yaw, radius, tolerance, quantities, cells, coefficients, hints: Vec::new() };
-        table.hints = table.found_hints();
-        Ok(table)
+        let (rows, count) = (about.yaw_coefficients() * COEFFICIENTS, quantities.len());
+        let mut coefficients = vec![f64::NAN; cells.len() * rows * count];
+        for (own, all) in by_cell.iter().zip(coefficients.chunks_exact_mut((rows * count).max(1))) {
+            // A cell under one yaw in a table over many has only the first coefficients of the yaw.
+            if !own.is_empty() {
+                all.fill(0.0);
+            }
+            for (row, out) in own.iter().zip(all.chunks_exact_mut(count)) {
+                out.copy_from_slice(&row[..count]);
+            }
+        }
+        Ok(Self { about, quantities, curves, forks, cells, coefficients })
     }
 
     /// Reads a table from the text of `table.wrp`; [`crate::docs::tables`] has the grammar.
@@ -89,45 +99,13 @@ impl ContactTable {
     /// # Errors
     /// Another grammar, version or order, with the line; a file that was cut off; more than a million cells.
     pub fn read(text: &str) -> Result<Self> {
-        let Parsed { about, quantities, cells, coefficients } = parse(text)?;
-        Self::of(about, quantities, cells, coefficients)
+        let Parsed { about, quantities, tree } = parse(text)?;
+        Self::of(about, quantities, tree)
     }
 
-    fn found_hints(&self) -> Vec<u32> {
-        let count = HINTS * self.cells.len();
-        let [from, to] = self.lateral;
-        let mut cell = 0;
-        let begin = |k: usize| from + (to - from) * (k as f64 / count as f64);
-        (0..count)
-            .map(|k| {
-                // A rounding lower, so that no displacement of the part lies before its hint.
-                let y = begin(k.saturating_sub(1));
-                while cell + 1 < self.cells.len() && self.cells[cell + 1].lateral[0] <= y {
-                    cell += 1;
-                }
-                cell as u32
-            })
-            .collect()
-    }
-
-    /// Returns the range of lateral displacements \[mm\].
-    pub fn lateral(&self) -> [f64; 2] {
-        self.lateral
-    }
-
-    /// Returns the yaw \[rad\] that all displacements have.
-    pub fn yaw(&self) -> f64 {
-        self.yaw
-    }
-
-    /// Returns the nominal rolling radius \[mm\], over which the tolerance of angles is taken.
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Returns the tolerance of lengths \[mm\].
-    pub fn tolerance(&self) -> f64 {
-        self.tolerance
+    /// Returns what the table is of.
+    pub fn about(&self) -> About {
+        self.about
     }
 
     /// Returns the quantities, in the order of the values of [`ContactTable::fill`].
@@ -135,9 +113,20 @@ impl ContactTable {
         &self.quantities
     }
 
-    /// Returns the cells in ascending order.
+    /// Returns the cells, in ascending order under one yaw.
     pub fn cells(&self) -> &[Cell] {
         &self.cells
+    }
+
+    /// Returns the curves at which cells begin and end.
+    pub fn curves(&self) -> &[Curve] {
+        &self.curves
+    }
+
+    /// Returns the forks on the way to cells. The way begins at the first; without any there is one cell. What a fork leads to has a
+    /// greater number.
+    pub fn forks(&self) -> &[Fork] {
+        &self.forks
     }
 
     /// Returns the number of a quantity: of the right-hand side, the left-hand side, or the wheelset (`None`).
@@ -145,66 +134,117 @@ impl ContactTable {
         self.quantities.iter().position(|quantity| quantity.name == name && quantity.right == right)
     }
 
-    /// Returns the coefficients of 1, t, … t⁸ of a quantity over a cell, with t from −1 to 1 over the cell; not numbers where the quantity
-    /// does not exist.
-    pub fn coefficients(&self, cell: usize, quantity: usize) -> [f64; COEFFICIENTS] {
-        let count = self.quantities.len();
-        std::array::from_fn(|k| self.coefficients[(cell * COEFFICIENTS + k) * count + quantity])
+    /// Returns the coefficients of 1, t, … t⁸ of a quantity over a cell that belong to u^j, with t from −1 to 1 from curve to curve and u over
+    /// the yaws of the cell; not numbers where the quantity does not exist.
+    pub fn coefficients(&self, cell: usize, quantity: usize, j: usize) -> [f64; COEFFICIENTS] {
+        let (count, rows) = (self.quantities.len(), self.about.yaw_coefficients());
+        from_fn(|k| self.coefficients[((cell * rows + j) * COEFFICIENTS + k) * count + quantity])
     }
 
-    /// Returns the number of the cell of a lateral displacement \[mm\]; `None` outside the range.
-    pub fn cell(&self, lateral: f64) -> Option<usize> {
-        let [from, to] = self.lateral;
-        if !(from..=to).contains(&lateral) {
+    /// Returns the number of the cell of a lateral displacement \[mm\] and a yaw \[rad\]; `None` outside the range.
+    pub fn cell(&self, lateral: f64, yaw: f64) -> Option<usize> {
+        let within = |[from, to]: [f64; 2], value: f64| (from..=to).contains(&value);
+        if !within(self.about.lateral, lateral) || !within(self.about.yaw, yaw) {
             return None;
         }
-        let count = self.hints.len();
-        let part = ((lateral - from) / (to - from) * count as f64) as usize;
-        let mut cell = self.hints[part.min(count - 1)] as usize;
-        while self.cells.get(cell + 1).is_some_and(|next| next.lateral[0] <= lateral) {
-            cell += 1;
+        let mut part = if self.forks.is_empty() { Part::Cell(0) } else { Part::Fork(0) };
+        loop {
+            match part {
+                Part::Cell(cell) => return Some(cell),
+                Part::Fork(fork) => {
+                    let fork = &self.forks[fork];
+                    let above = match fork.curve {
+                        Some(curve) => lateral >= self.curves[curve].at(yaw),
+                        None => yaw >= fork.yaw,
+                    };
+                    part = fork.parts[usize::from(above)];
+                }
+            }
         }
-        Some(cell)
     }
 
-    /// Gives all quantities at a lateral displacement \[mm\]: `out` has their number. What does not exist is not a number: outside the
-    /// range, where a wheel is off its rail, curvatures at a kink.
+    /// Returns the displacements \[mm\] at which a cell begins and ends under a yaw \[rad\].
+    pub fn ends(&self, cell: usize, yaw: f64) -> [f64; 2] {
+        self.cells[cell].curves.map(|curve| self.curves[curve].at(yaw))
+    }
+
+    /// Returns how a cell begins.
+    pub fn begins(&self, cell: usize) -> Beginning {
+        self.curves[self.cells[cell].curves[0]].kind
+    }
+
+    /// Gives all quantities at a lateral displacement \[mm\] and a yaw \[rad\]: `out` has their number. What does not exist is not a number:
+    /// outside the range, where a wheel is off its rail, curvatures at a kink.
     ///
-    /// Accuracy: the stated error of each quantity, but for [`BREAK`](super::BREAK) around hops and joints. Cost: some 50 ns.
-    pub fn fill(&self, lateral: f64, out: &mut [f64]) {
-        let Some(number) = self.cell(lateral) else {
+    /// Accuracy: the stated error of each quantity, but for [`About::beside_curves`] around hops and joints. Cost: some 50 ns under one yaw,
+    /// 300 ns over a range of yaws.
+    pub fn fill(&self, lateral: f64, yaw: f64, out: &mut [f64]) {
+        let Some((rows, t, u)) = self.found(lateral, yaw) else {
             out.fill(f64::NAN);
             return;
         };
-        let t = share(self.cells[number].lateral, lateral);
-        let count = self.quantities.len();
-        let rows = &self.coefficients[number * COEFFICIENTS * count..][..COEFFICIENTS * count];
-        let mut rows = rows.chunks_exact(count).rev();
-        rows.next().into_iter().for_each(|highest| out.copy_from_slice(highest));
-        for row in rows {
-            out.iter_mut().zip(row).for_each(|(value, c)| *value = *value * t + c);
+        let (whole, rest) = out.as_chunks_mut::<LANES>();
+        let behind = LANES * whole.len();
+        for (k, values) in whole.iter_mut().enumerate() {
+            *values = self.values(rows, LANES * k, t, u);
+        }
+        for (k, value) in rest.iter_mut().enumerate() {
+            [*value] = self.values(rows, behind + k, t, u);
         }
     }
 
-    /// Gives the quantities with these numbers at many lateral displacements \[mm\]: `out` has the values of the first at all
-    /// displacements, then those of the second, and so on. It runs on the threads of the current rayon pool; any number of threads gives
-    /// the bits of [`ContactTable::fill`].
-    pub fn fill_many(&self, lateral: &[f64], numbers: &[usize], out: &mut [f64]) {
+    /// Gives N quantities from a number on, from the coefficients of a cell.
+    fn values<const N: usize>(&self, rows: &[f64], first: usize, t: f64, u: f64) -> [f64; N] {
+        let count = self.quantities.len();
+        let mut values = [0.0; N];
+        for k in (0..COEFFICIENTS).rev() {
+            let mut sums = [0.0; N];
+            for row in rows.chunks_exact(COEFFICIENTS * count).rev() {
+                let own = &row[k * count + first..][..N];
+                sums = from_fn(|i| sums[i] * u + own[i]);
+            }
+            values = from_fn(|i| values[i] * t + sums[i]);
+        }
+        values
+    }
+
+    /// Returns the coefficients of a cell, and where a position is in it.
+    fn found(&self, lateral: f64, yaw: f64) -> Option<(&[f64], f64, f64)> {
+        let cell = self.cell(lateral, yaw)?;
+        let rows = self.about.yaw_coefficients() * COEFFICIENTS * self.quantities.len();
+        let t = share(self.ends(cell, yaw), lateral).clamp(-1.0, 1.0);
+        Some((&self.coefficients[cell * rows..][..rows], t, share(self.cells[cell].yaw, yaw)))
+    }
+
+    /// Gives the quantities with these numbers at many lateral displacements \[mm\] and yaws \[rad\], as many or one: `out` has the values of
+    /// the first at all positions, then those of the second, and so on. It runs on the threads of the current rayon pool; any number of
+    /// threads gives the bits of [`ContactTable::fill`].
+    pub fn fill_many(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], out: &mut [f64]) {
         let mut parts: Vec<Vec<&mut [f64]>> = Vec::new();
         parts.resize_with(lateral.len().div_ceil(TOGETHER), Vec::new);
         for column in out.chunks_exact_mut(lateral.len().max(1)) {
             parts.iter_mut().zip(column.chunks_mut(TOGETHER)).for_each(|(part, piece)| part.push(piece));
         }
-        let parts = parts.into_par_iter().zip(lateral.par_chunks(TOGETHER));
-        parts.for_each(|(mut columns, lateral)| self.fill_columns(lateral, numbers, &mut columns));
+        let parts = parts.into_par_iter().zip(lateral.par_chunks(TOGETHER)).enumerate();
+        parts.for_each(|(k, (mut columns, lateral))| {
+            let yaw = if let [one] = yaw {
+                std::slice::from_ref(one)
+            } else {
+                &yaw[k * TOGETHER..][..lateral.len()]
+            };
+            self.fill_columns(lateral, yaw, numbers, &mut columns);
+        });
     }
 
     /// Fills a part of each column, by rows that stay in the nearest cache.
-    fn fill_columns(&self, lateral: &[f64], numbers: &[usize], columns: &mut [&mut [f64]]) {
+    fn fill_columns(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], columns: &mut [&mut [f64]]) {
         let mut rows = [[0.0; MOST]; ROWS];
         let count = self.quantities.len();
         for (k, lateral) in lateral.chunks(ROWS).enumerate() {
-            rows.iter_mut().zip(lateral).for_each(|(row, y)| self.fill(*y, &mut row[..count]));
+            for (i, (row, y)) in rows.iter_mut().zip(lateral).enumerate() {
+                let yaw = if let [one] = yaw { *one } else { yaw[k * ROWS + i] };
+                self.fill(*y, yaw, &mut row[..count]);
+            }
             for (column, &number) in columns.iter_mut().zip(numbers) {
                 let places = &mut column[k * ROWS..][..lateral.len()];
                 places.iter_mut().zip(&rows).for_each(|(place, row)| *place = row[number]);
@@ -212,13 +252,57 @@ impl ContactTable {
         }
     }
 
-    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail, in ascending order: the table has nothing there.
-    pub fn off_rail(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.cells.iter().filter(|cell| !cell.touches).map(|cell| cell.lateral)
+    /// Returns the numbers of the cells under a yaw \[rad\], in ascending order.
+    fn under(&self, yaw: f64) -> Vec<usize> {
+        let (mut cells, mut open) = (Vec::new(), Vec::new());
+        open.push(if self.forks.is_empty() { Part::Cell(0) } else { Part::Fork(0) });
+        while let Some(part) = open.pop() {
+            match part {
+                Part::Cell(cell) => cells.push(cell),
+                Part::Fork(fork) => {
+                    let Fork { curve, yaw: at, parts: [below, above] } = self.forks[fork];
+                    match curve {
+                        Some(_) => open.extend([above, below]),
+                        None => open.push(if yaw >= at { above } else { below }),
+                    }
+                }
+            }
+        }
+        cells
     }
 
-    /// Returns the displacements \[mm\] of hops, joints or edges between cells, in ascending order.
-    pub fn places(&self, kind: Beginning) -> impl Iterator<Item = f64> {
-        self.cells.iter().skip(1).filter(move |cell| cell.begins == kind).map(|cell| cell.lateral[0])
+    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under a yaw \[rad\], in ascending order: the table has
+    /// nothing there.
+    pub fn off_rail(&self, yaw: f64) -> Vec<[f64; 2]> {
+        let off = self.under(yaw).into_iter().filter(|cell| !self.cells[*cell].touches);
+        off.map(|cell| self.ends(cell, yaw)).collect()
+    }
+
+    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under one of the yaws, in ascending order.
+    pub fn off_rail_somewhere(&self) -> Vec<[f64; 2]> {
+        let off = (0..self.cells.len()).filter(|cell| !self.cells[*cell].touches);
+        let mut ranges: Vec<[f64; 2]> = off
+            .map(|cell| {
+                let [first, last] = self.cells[cell].yaw;
+                let yaws = [first, first + (last - first) / 2.0, last];
+                let ends = yaws.map(|yaw| self.ends(cell, yaw));
+                ends.into_iter().fold(ends[0], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
+            })
+            .collect();
+        ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        ranges.dedup_by(|next, before| {
+            let joined = next[0] <= before[1];
+            if joined {
+                before[1] = before[1].max(next[1]);
+            }
+            joined
+        });
+        ranges
+    }
+
+    /// Returns the displacements \[mm\] of hops, joints or edges under a yaw \[rad\], in ascending order.
+    pub fn places(&self, kind: Beginning, yaw: f64) -> Vec<f64> {
+        let cells = self.under(yaw).into_iter().skip(1);
+        cells.filter(|cell| self.begins(*cell) == kind).map(|cell| self.ends(cell, yaw)[0]).collect()
     }
 }

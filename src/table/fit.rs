@@ -1,14 +1,15 @@
-//! Fits polynomials over the stretches between breaks.
+//! Fits polynomials over a region without breaks.
 
-use std::array::from_fn;
-use std::f64::consts::PI;
-use std::sync::LazyLock;
+use rayon::prelude::*;
 
-use super::breaks::{Break, HOP, Stretch, divide, stretches};
-use super::cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks, share};
+use super::asked::Asked;
+use super::breaks::{Break, HOP, Row, divide};
+use super::cell::{BREAK, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
+use super::curve::{Curve, POWERS, YAW_POWERS, node, share};
 use super::quantity::{MOST, Needs, Quantity, Values};
 use super::state::{Sampler, State};
 use crate::error::Result;
+use crate::search::WheelsetOnTrack;
 
 /// Stated error over the largest difference in the check of a cell. The check is made where the polynomial through the nodes is
 /// largest, between them.
@@ -20,113 +21,105 @@ const ACCEPTED: f64 = 0.25;
 /// Share of the tolerance by which a polynomial may step back where the function does not.
 const STEP_BACK: f64 = 1e-3;
 
-/// Width \[mm\] below which a cell is not halved any more; the stated error then shows what is left.
+/// Width \[mm\] below which a cell is not divided any more; the stated error then shows what is left.
 const SHORTEST: f64 = 1e-6;
 
 /// Width \[mm\] of cells in which a jump is looked for that elements do not show: two places on one pair of elements.
 const MAY_JUMP: f64 = 1e-3;
 
-/// States over a cell: at the nodes, and at points between each two of them.
+/// States along a row of a cell: at the nodes, and at points between each two of them.
 const SAMPLES: usize = 2 * COEFFICIENTS - 1;
 
 /// Points at which polynomials are looked at for steps back.
 const LOOKED_AT: usize = 33;
 
+/// Coefficients along the displacement, of 1, t, …
+type Powers = [Values; COEFFICIENTS];
+
 /// A cell with its polynomials.
 pub(super) struct Fitted {
     pub cell: Cell,
-    /// Coefficients of 1, t, … of all quantities.
-    pub coefficients: [Values; COEFFICIENTS],
+    /// Coefficients of 1, u, … of those of 1, t, … of all quantities; one with one row, and none where nothing touches.
+    pub coefficients: Vec<Powers>,
     /// Largest differences in the check.
     pub errors: Values,
 }
 
-/// Coefficient of t^i of the polynomial that is 1 at node k and 0 at the others, at \[k\]\[i\]; the nodes are −cos(kπ/8).
-static POWERS: LazyLock<[[f64; COEFFICIENTS]; COEFFICIENTS]> = LazyLock::new(|| {
-    let last = COEFFICIENTS - 1;
-    let mut chebyshev = [[0.0; COEFFICIENTS]; COEFFICIENTS];
-    (chebyshev[0][0], chebyshev[1][1]) = (1.0, 1.0);
-    for j in 2..COEFFICIENTS {
-        for i in 0..=j {
-            let twice = if i == 0 { 0.0 } else { 2.0 * chebyshev[j - 1][i - 1] };
-            chebyshev[j][i] = twice - chebyshev[j - 2][i];
-        }
-    }
-    let half = |k: usize| if k == 0 || k == last { 0.5 } else { 1.0 };
-    let weight = |j: usize, k: usize| {
-        2.0 / last as f64 * half(j) * half(k) * (PI * (j * (last - k)) as f64 / last as f64).cos()
-    };
-    from_fn(|k| from_fn(|i| (0..COEFFICIENTS).map(|j| weight(j, k) * chebyshev[j][i]).sum()))
-});
+/// What came of fitting a region.
+pub(super) enum Fit {
+    /// One cell will do.
+    Cell(Box<Fitted>),
+    /// Breaks were found that were not known: they have been added to the rows.
+    Unseen,
+    /// It has to be divided.
+    Coarse {
+        /// The polynomials of the yaw err more than those of the displacement.
+        over_yaw: bool,
+        /// The states in the middle of all rows.
+        middles: Vec<State>,
+    },
+}
 
-/// Fits a stretch.
+/// Fits a region between two curves, with the nodes of the yaw and points between them as rows, or with one row.
 ///
 /// # Errors
 /// The errors of the search.
 pub(super) fn fit(
-    sampler: &mut Sampler<'_>,
+    system: &WheelsetOnTrack,
+    asked: &Asked,
     quantities: &[Quantity],
-    stretch: &Stretch,
-) -> Result<Vec<Fitted>> {
-    let mut open = vec![Stretch { ends: stretch.ends.clone(), begins: stretch.begins }];
-    let mut done = Vec::new();
-    while let Some(Stretch { ends, begins }) = open.pop() {
-        let mut cell = Cell {
-            lateral: ends.each_ref().map(|state| state.lateral),
-            begins,
-            touches: false,
-            lacks: [Lacks::Nothing; 2],
-        };
-        let Some(topology) = ends[0].topology else {
-            let coefficients = [[f64::NAN; MOST]; COEFFICIENTS];
-            done.push(Fitted { cell, coefficients, errors: [0.0; MOST] });
-            continue;
-        };
-        (cell.touches, cell.lacks) = (true, topology.lacks);
-        let mut samples = samples(sampler, &ends)?;
-        let width = cell.lateral[1] - cell.lateral[0];
-        if width <= SHORTEST {
-            // Breaks so close to each other are one.
-            let others = samples.iter_mut().filter(|sample| sample.topology != ends[0].topology);
-            others.for_each(|sample| sample.values = ends[0].values);
-            done.push(Fitted::new(cell, quantities, &samples));
-            continue;
-        }
-        let unseen = breaks_between(sampler, &samples)?;
-        if !unseen.is_empty() {
-            open.extend(stretches(ends, begins, unseen).into_iter().rev());
-            continue;
-        }
-        let fitted = Fitted::new(cell, quantities, &samples);
-        if fitted.is_fine(quantities, &samples) {
-            done.push(fitted);
-            continue;
-        }
-        let jump = if width <= MAY_JUMP { jump(sampler, &samples)? } else { None };
-        let parts = match jump {
-            Some(jump) => stretches(ends, begins, vec![jump]),
-            None => {
-                let middle = samples[SAMPLES / 2].clone();
-                let [from, to] = ends;
-                vec![
-                    Stretch { ends: [from, middle.clone()], begins },
-                    Stretch { ends: [middle, to], begins: Beginning::Smooth },
-                ]
-            }
-        };
-        open.extend(parts.into_iter().rev());
+    curves: &[Curve; 2],
+    rows: &mut [Row],
+) -> Result<Fit> {
+    let begin = rows[0].ends[0].topology;
+    let cell = Cell {
+        yaw: [rows[0].yaw, rows[rows.len() - 1].yaw],
+        curves: [0; 2],
+        touches: begin.is_some(),
+        lacks: begin.map_or([Lacks::Nothing; 2], |topology| topology.lacks),
+    };
+    if begin.is_none() {
+        let fitted = Fitted { cell, coefficients: Vec::new(), errors: [0.0; MOST] };
+        return Ok(Fit::Cell(Box::new(fitted)));
     }
-    Ok(done)
+    let width = rows.iter().map(|row| row.ends[1].lateral - row.ends[0].lateral).fold(0.0, f64::max);
+    let along = |row: &mut Row| {
+        let mut sampler = Sampler::new(system, asked, row.yaw);
+        let samples = samples(&mut sampler, &row.ends)?;
+        let unseen = width > SHORTEST && add_unseen(&mut sampler, &samples, row)?;
+        Ok((samples, unseen))
+    };
+    let found: Vec<(Vec<State>, bool)> = rows.par_iter_mut().map(along).collect::<Result<_>>()?;
+    if found.iter().any(|(_, unseen)| *unseen) {
+        return Ok(Fit::Unseen);
+    }
+    let mut samples: Vec<Vec<State>> = found.into_iter().map(|(samples, _)| samples).collect();
+    if width <= SHORTEST {
+        // Breaks so close to each other are one.
+        for (samples, row) in samples.iter_mut().zip(&*rows) {
+            let begin = &row.ends[0];
+            let others = samples.iter_mut().filter(|sample| sample.topology != begin.topology);
+            others.for_each(|sample| sample.values = begin.values);
+        }
+    }
+    let (fitted, over_yaw) = Fitted::new(cell, quantities, curves, &samples, rows);
+    if width <= SHORTEST || fitted.is_fine(quantities, &samples, rows) {
+        return Ok(Fit::Cell(Box::new(fitted)));
+    }
+    if width <= MAY_JUMP && add_jumps(system, asked, &samples, rows)? {
+        return Ok(Fit::Unseen);
+    }
+    let middles = samples.iter().map(|samples| samples[SAMPLES / 2].clone()).collect();
+    Ok(Fit::Coarse { over_yaw, middles })
 }
 
-/// Searches at all points of a cell.
+/// Searches at all points of a row.
 fn samples(sampler: &mut Sampler<'_>, ends: &Break) -> Result<Vec<State>> {
     let [from, to] = ends.each_ref().map(|state| state.lateral);
     let mut samples = Vec::with_capacity(SAMPLES);
     samples.push(ends[0].clone());
     for k in 1..SAMPLES - 1 {
-        let t = -(PI * k as f64 / (SAMPLES - 1) as f64).cos();
-        let y = from + (to - from) * (0.5 * (1.0 + t));
+        let y = from + (to - from) * (0.5 * (1.0 + node(k, SAMPLES)));
         let sample = sampler.near(y.clamp(from, to), 0.0, &samples[k - 1])?;
         samples.push(sample);
     }
@@ -134,21 +127,58 @@ fn samples(sampler: &mut Sampler<'_>, ends: &Break) -> Result<Vec<State>> {
     Ok(samples)
 }
 
-/// Finds breaks that the search of breaks has not seen: other elements touch at one of the samples.
-fn breaks_between(sampler: &mut Sampler<'_>, samples: &[State]) -> Result<Vec<Break>> {
+/// Adds breaks to a row that the search of breaks has not seen: other elements touch at one of the samples. Tells whether there are any.
+fn add_unseen(sampler: &mut Sampler<'_>, samples: &[State], row: &mut Row) -> Result<bool> {
     let mut breaks = Vec::new();
     for pair in samples.windows(2).filter(|pair| pair[0].topology != pair[1].topology) {
-        divide(sampler, &pair[0], &pair[1], &mut breaks)?;
+        if !is_known(&row.breaks, pair) {
+            divide(sampler, &pair[0], &pair[1], &mut breaks)?;
+        }
     }
-    Ok(breaks)
+    let some = !breaks.is_empty();
+    add(row, breaks);
+    Ok(some)
+}
+
+/// Tells whether a break is known between two samples.
+fn is_known(breaks: &[Break], pair: &[State]) -> bool {
+    let [from, to] = [pair[0].lateral, pair[1].lateral];
+    breaks.iter().any(|[before, after]| after.lateral >= from && before.lateral <= to)
+}
+
+/// Adds breaks to a row, in order.
+fn add(row: &mut Row, breaks: Vec<Break>) {
+    row.breaks.extend(breaks);
+    row.breaks.sort_by(|a, b| a[0].lateral.total_cmp(&b[0].lateral));
+}
+
+/// Adds jumps of places of contact to the rows. Tells whether there are any.
+fn add_jumps(
+    system: &WheelsetOnTrack,
+    asked: &Asked,
+    samples: &[Vec<State>],
+    rows: &mut [Row],
+) -> Result<bool> {
+    let mut some = false;
+    for (samples, row) in samples.iter().zip(rows) {
+        let mut sampler = Sampler::new(system, asked, row.yaw);
+        if let Some(jump) = jump(&mut sampler, samples, &row.breaks)? {
+            add(row, vec![jump]);
+            some = true;
+        }
+    }
+    Ok(some)
 }
 
 /// Finds a jump of a place of contact between the samples: the largest change, halved to the width of a break.
-fn jump(sampler: &mut Sampler<'_>, samples: &[State]) -> Result<Option<Break>> {
+fn jump(sampler: &mut Sampler<'_>, samples: &[State], known: &[Break]) -> Result<Option<Break>> {
     let change = |pair: &[State]| pair[0].moved(&pair[1]);
     let Some(pair) = samples.windows(2).max_by(|a, b| change(a).total_cmp(&change(b))) else {
         return Ok(None);
     };
+    if is_known(known, pair) {
+        return Ok(None);
+    }
     let [mut from, mut to] = [pair[0].clone(), pair[1].clone()];
     while to.lateral - from.lateral > BREAK {
         let middle = from.lateral + (to.lateral - from.lateral) / 2.0;
@@ -165,48 +195,86 @@ fn jump(sampler: &mut Sampler<'_>, samples: &[State]) -> Result<Option<Break>> {
 }
 
 impl Fitted {
-    fn new(cell: Cell, quantities: &[Quantity], samples: &[State]) -> Self {
-        let mut coefficients = [[0.0; MOST]; COEFFICIENTS];
-        for (node, powers) in samples.iter().step_by(2).zip(&*POWERS) {
-            for (row, power) in coefficients.iter_mut().zip(powers) {
-                row.iter_mut().zip(&node.values).for_each(|(c, value)| *c += power * value);
-            }
-        }
+    /// Fits the polynomials, and tells whether those of the yaw err more than those of the displacement.
+    fn new(
+        cell: Cell,
+        quantities: &[Quantity],
+        curves: &[Curve; 2],
+        samples: &[Vec<State>],
+        rows: &[Row],
+    ) -> (Self, bool) {
+        let node = |(samples, row): (&Vec<State>, &Row)| {
+            let ends = row.ends.each_ref().map(|state| state.lateral);
+            let [from, to] = curves.map(|curve| share(ends, curve.at(row.yaw)));
+            stretched(&through(samples), [from, to])
+        };
+        let nodes: Vec<Powers> = samples.iter().zip(rows).step_by(2).map(node).collect();
+        let mut coefficients = if nodes.len() < YAW_COEFFICIENTS { nodes } else { over_yaw(&nodes) };
         for (q, quantity) in quantities.iter().enumerate().filter(|(_, quantity)| !exists(&cell, quantity)) {
             debug_assert!(quantity.needs != Needs::Contact);
-            coefficients.iter_mut().for_each(|row| row[q] = f64::NAN);
+            coefficients.iter_mut().flatten().for_each(|row| row[q] = f64::NAN);
         }
         let mut fitted = Self { cell, coefficients, errors: [0.0; MOST] };
-        for sample in samples {
-            let values = fitted.at(share(cell.lateral, sample.lateral));
-            let found = values.iter().zip(&sample.values).map(|(p, value)| (p - value).abs());
-            // `max` leaves out what is not a number: quantities that do not exist.
-            fitted.errors.iter_mut().zip(found).for_each(|(error, found)| *error = error.max(found));
-        }
-        fitted
+        let [along, over_yaw] = fitted.compare(quantities, curves, samples, rows);
+        (fitted, over_yaw > along)
     }
 
-    fn at(&self, t: f64) -> Values {
-        let [lower @ .., highest] = &self.coefficients;
-        let mut values = *highest;
-        for row in lower.iter().rev() {
-            values.iter_mut().zip(row).for_each(|(value, c)| *value = *value * t + c);
+    /// Finds the errors at all samples. Gives the largest share of a tolerance between nodes of the displacement, and of the yaw, at nodes of
+    /// the other.
+    fn compare(
+        &mut self,
+        quantities: &[Quantity],
+        curves: &[Curve; 2],
+        samples: &[Vec<State>],
+        rows: &[Row],
+    ) -> [f64; 2] {
+        let most = 1.0 + MOST_STRETCHED;
+        let mut shares = [0.0_f64; 2];
+        for (r, (samples, row)) in samples.iter().zip(rows).enumerate() {
+            let (powers, ends) = (self.along(row.yaw), curves.map(|curve| curve.at(row.yaw)));
+            for (k, sample) in samples.iter().enumerate() {
+                let values = at(&powers, share(ends, sample.lateral).clamp(-most, most));
+                let found = values.iter().zip(&sample.values).map(|(p, value)| (p - value).abs());
+                for ((error, found), quantity) in self.errors.iter_mut().zip(found).zip(quantities) {
+                    // `max` leaves out what is not a number: quantities that do not exist.
+                    *error = error.max(found);
+                    let share = found / quantity.tolerance;
+                    match (r % 2, k % 2) {
+                        (0, 1) => shares[0] = shares[0].max(share),
+                        (1, 0) => shares[1] = shares[1].max(share),
+                        _ => {}
+                    }
+                }
+            }
         }
-        values
+        shares
     }
 
-    /// Tells whether every quantity is within its tolerance, and monotone where its samples are.
-    fn is_fine(&self, quantities: &[Quantity], samples: &[State]) -> bool {
+    /// Gives the polynomials along the displacement under a yaw \[rad\].
+    fn along(&self, yaw: f64) -> Powers {
+        let u = share(self.cell.yaw, yaw);
+        let mut all = self.coefficients.iter().rev();
+        let mut sum = all.next().copied().unwrap_or([[0.0; MOST]; COEFFICIENTS]);
+        for powers in all {
+            let each = sum.iter_mut().flatten().zip(powers.iter().flatten());
+            each.for_each(|(sum, c)| *sum = *sum * u + c);
+        }
+        sum
+    }
+
+    /// Tells whether every quantity is within its tolerance, and monotone in every row where its samples are.
+    fn is_fine(&self, quantities: &[Quantity], samples: &[Vec<State>], rows: &[Row]) -> bool {
         let accurate = quantities
             .iter()
             .zip(self.errors)
             .all(|(quantity, error)| error <= ACCEPTED * quantity.tolerance);
-        accurate && self.is_monotone(quantities, samples)
+        let mut each = samples.iter().zip(rows);
+        accurate && each.all(|(samples, row)| self.is_monotone(quantities, samples, row.yaw))
     }
 
-    fn is_monotone(&self, quantities: &[Quantity], samples: &[State]) -> bool {
-        let looks: Vec<Values> =
-            (0..LOOKED_AT).map(|k| self.at(-(PI * k as f64 / (LOOKED_AT - 1) as f64).cos())).collect();
+    fn is_monotone(&self, quantities: &[Quantity], samples: &[State], yaw: f64) -> bool {
+        let powers = self.along(yaw);
+        let looks: Vec<Values> = (0..LOOKED_AT).map(|k| at(&powers, node(k, LOOKED_AT))).collect();
         quantities.iter().enumerate().filter(|(_, quantity)| exists(&self.cell, quantity)).all(
             |(q, quantity)| {
                 [1.0, -1.0].into_iter().all(|sign| {
@@ -219,6 +287,59 @@ impl Fitted {
             },
         )
     }
+}
+
+/// Interpolates the nodes of a row.
+fn through(samples: &[State]) -> Powers {
+    let mut sum = [[0.0; MOST]; COEFFICIENTS];
+    for (node, powers) in samples.iter().step_by(2).zip(&*POWERS) {
+        for (row, power) in sum.iter_mut().zip(powers) {
+            row.iter_mut().zip(&node.values).for_each(|(c, value)| *c += power * value);
+        }
+    }
+    sum
+}
+
+/// Most that polynomials are stretched beyond the ends of their row, in halves of it.
+const MOST_STRETCHED: f64 = 0.5;
+
+/// Gives polynomials of t from −1 to 1 between curves from those between the ends of a row, which lie inside by what curves err. `ends` are
+/// the places of the curves in the row. A row that is not much longer than that is left alone.
+fn stretched(powers: &Powers, [from, to]: [f64; 2]) -> Powers {
+    let (slope, middle) = ((to - from) / 2.0, from + (to - from) / 2.0);
+    if !((from + 1.0).abs() < MOST_STRETCHED && (to - 1.0).abs() < MOST_STRETCHED) {
+        return *powers;
+    }
+    let mut sum = [[0.0; MOST]; COEFFICIENTS];
+    for power in powers.iter().rev() {
+        for k in (0..COEFFICIENTS).rev() {
+            let below = if k > 0 { sum[k - 1] } else { [0.0; MOST] };
+            sum[k].iter_mut().zip(below).for_each(|(c, below)| *c = *c * middle + slope * below);
+        }
+        sum[0].iter_mut().zip(power).for_each(|(c, own)| *c += own);
+    }
+    sum
+}
+
+/// Interpolates the polynomials of the nodes of the yaw.
+fn over_yaw(nodes: &[Powers]) -> Vec<Powers> {
+    let of = |j: usize| {
+        let mut sum = [[0.0; MOST]; COEFFICIENTS];
+        for (node, powers) in nodes.iter().zip(&*YAW_POWERS) {
+            let each = sum.iter_mut().flatten().zip(node.iter().flatten());
+            each.for_each(|(c, value)| *c += powers[j] * value);
+        }
+        sum
+    };
+    (0..YAW_COEFFICIENTS).map(of).collect()
+}
+
+fn at([lower @ .., highest]: &Powers, t: f64) -> Values {
+    let mut values = *highest;
+    for row in lower.iter().rev() {
+        values.iter_mut().zip(row).for_each(|(value, c)| *value = *value * t + c);
+    }
+    values
 }
 
 /// Tells whether a quantity exists over a cell.

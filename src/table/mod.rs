@@ -5,18 +5,25 @@
 //! end where contact hops to another place, where it crosses a joint, where a wheel leaves its rail, and where a polynomial would err
 //! by more than the tolerance: see [`crate::docs::tables`].
 
+mod about;
 mod asked;
 mod breaks;
 mod build;
 mod cell;
 mod contact_table;
+mod curve;
 mod fit;
 mod quantity;
 mod read;
+mod region;
 mod state;
+mod tree;
 
+pub use about::About;
 pub use asked::{Asked, Pressed};
 pub use build::build;
-pub use cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks};
+pub use cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 pub use contact_table::ContactTable;
+pub use curve::Curve;
 pub use quantity::{Needs, Quantity, TOLERANCE_LENGTH};
+pub use tree::{Fork, Part};

@@ -2,9 +2,12 @@
 
 use std::str::Lines;
 
-use super::cell::{Beginning, COEFFICIENTS, Cell, Lacks};
+use super::about::About;
+use super::cell::{Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
+use super::curve::Curve;
 use super::fit::exists;
-use super::quantity::Quantity;
+use super::quantity::{MOST, Quantity, Values};
+use super::tree::{Fork, Part, Tree};
 use crate::error::{Error, ErrorKind, Result};
 
 /// Columns of a number.
@@ -21,11 +24,9 @@ struct Deck<'a> {
 
 /// What a table is made of.
 pub(super) struct Parsed {
-    /// Range \[mm\], yaw \[rad\], nominal rolling radius and tolerance of lengths \[mm\].
-    pub about: ([f64; 2], f64, f64, f64),
+    pub about: About,
     pub quantities: Vec<Quantity>,
-    pub cells: Vec<Cell>,
-    pub coefficients: Vec<f64>,
+    pub tree: Tree,
 }
 
 /// Reads the text of `table.wrp`.
@@ -35,32 +36,52 @@ pub(super) struct Parsed {
 pub(super) fn parse(text: &str) -> Result<Parsed> {
     let mut deck = Deck { lines: text.lines(), number: 0 };
     let head = deck.line()?;
-    if head.trim_end() != "WRTABLE    1 mm" {
-        return Err(deck.wrong(head, "WRTABLE    1 mm"));
-    }
+    let over_yaw = match head.trim_end() {
+        "WRTABLE    1 mm" => false,
+        "WRTABLE    2 mm" => true,
+        _ => return Err(deck.wrong(head, "WRTABLE    1 mm, or 2 mm over yaw")),
+    };
     let [comments] = deck.whole::<1>(8)?;
     for _ in 0..comments {
         deck.line()?;
     }
-    let [cell_count, quantity_count, coefficients] = deck.whole::<3>(8)?;
-    if coefficients != COEFFICIENTS || cell_count > MOST_CELLS || quantity_count > super::quantity::MOST {
-        let found = format!("{cell_count} {quantity_count} {coefficients}");
-        let expected = format!("at most {MOST_CELLS} cells, known quantities, {COEFFICIENTS} coefficients");
+    let [cells, count, powers, yaw_powers, curves, forks] = if over_yaw {
+        deck.whole::<6>(8)?
+    } else {
+        let [cells, count, powers] = deck.whole::<3>(8)?;
+        [cells, count, powers, YAW_COEFFICIENTS, 0, 0]
+    };
+    let most = [cells, curves, forks].into_iter().max().unwrap_or_default();
+    if [powers, yaw_powers] != [COEFFICIENTS, YAW_COEFFICIENTS] || most > MOST_CELLS || count > MOST {
+        let found = format!("{cells} {count} {powers} {yaw_powers} {curves} {forks}");
+        let expected = format!(
+            "at most {MOST_CELLS} cells, known quantities, {COEFFICIENTS} and {YAW_COEFFICIENTS} coefficients"
+        );
         return Err(deck.wrong(&found, &expected).of_kind(ErrorKind::Limit));
     }
     let lateral = deck.numbers::<2>(0)?;
-    let [yaw, radius, tolerance] = deck.numbers::<3>(0)?;
-    let quantities = (0..quantity_count).map(|_| deck.quantity()).collect::<Result<Vec<_>>>()?;
-    let (mut cells, mut all) = (Vec::new(), Vec::new());
-    for _ in 0..cell_count {
-        let cell = deck.cell()?;
-        cells.push(cell);
-        deck.coefficients(&cell, &quantities, &mut all)?;
+    let (yaw, radius, tolerance) = if over_yaw {
+        let yaw = deck.numbers::<2>(0)?;
+        let [radius, tolerance, _] = deck.numbers::<3>(0)?;
+        (yaw, radius, tolerance)
+    } else {
+        let [yaw, radius, tolerance] = deck.numbers::<3>(0)?;
+        ([yaw; 2], radius, tolerance)
+    };
+    if over_yaw != (yaw[1] > yaw[0]) {
+        return Err(deck.wrong(&format!("yaws {yaw:?}"), "ascending ones"));
     }
+    let about = About { lateral, yaw, radius, tolerance };
+    let quantities = (0..count).map(|_| deck.quantity()).collect::<Result<Vec<_>>>()?;
+    let tree = if over_yaw {
+        deck.tree([cells, curves, forks], &quantities)?
+    } else {
+        deck.row_of_cells(cells, about, &quantities)?
+    };
     if deck.line()?.trim_end() != "END" {
         return Err(deck.wrong("another line", "END"));
     }
-    Ok(Parsed { about: (lateral, yaw, radius, tolerance), quantities, cells, coefficients: all })
+    Ok(Parsed { about, quantities, tree })
 }
 
 impl<'a> Deck<'a> {
@@ -117,8 +138,78 @@ impl<'a> Deck<'a> {
             .ok_or_else(|| self.wrong(line, "a quantity of this version of wheelrail"))
     }
 
-    fn cell(&mut self) -> Result<Cell> {
-        let line = self.line()?;
+    /// Reads the cells of a table under one yaw, in ascending order over the whole range.
+    fn row_of_cells(&mut self, count: usize, about: About, quantities: &[Quantity]) -> Result<Tree> {
+        let (mut cells, mut all) = (Vec::new(), Vec::new());
+        let mut before = about.lateral[0];
+        for c in 0..count {
+            let line = self.line()?;
+            let (cell, begins) = self.flags(line)?;
+            let [from, to] = self.of_line::<2>(line, 8)?;
+            let whole = (c > 0 || from == before) && (c + 1 < count || to == about.lateral[1]);
+            if !whole || from < before || to < from {
+                return Err(self.wrong(line, "ascending cells over the whole range"));
+            }
+            before = to;
+            cells.push(([from, to], begins, Cell { yaw: about.yaw, ..cell }));
+            all.push(self.coefficients(&cell, quantities, 1)?);
+        }
+        Ok(Tree { coefficients: all, ..Tree::of_cells(cells, about.yaw) })
+    }
+
+    /// Reads the curves, forks and cells of a table over yaw.
+    fn tree(&mut self, [cells, curves, forks]: [usize; 3], quantities: &[Quantity]) -> Result<Tree> {
+        let mut tree = Tree::default();
+        for _ in 0..curves {
+            let line = self.line()?;
+            let kind = line.get(..8).and_then(|field| field.trim().parse::<usize>().ok());
+            let Some(kind) = kind.and_then(|code| Beginning::ALL.get(code).copied()) else {
+                return Err(self.wrong(line, "the code of a curve, 0 to 3"));
+            };
+            let yaw = self.of_line::<2>(line, 8)?;
+            let [c0, c1, c2] = self.numbers::<3>(0)?;
+            let [c3, c4] = self.numbers::<2>(0)?;
+            tree.curves.push(Curve { yaw, kind, coefficients: [c0, c1, c2, c3, c4] });
+        }
+        for _ in 0..forks {
+            let line = self.line()?;
+            let [below, above, curve] = self.signed::<3>(line, 0)?;
+            let [yaw] = self.of_line::<1>(line, 24)?;
+            let part = |code: i64| match code {
+                1.. => Some(Part::Fork(code as usize - 1)),
+                0 => None,
+                _ => Some(Part::Cell(code.unsigned_abs() as usize - 1)),
+            };
+            let (Some(below), Some(above), 0..) = (part(below), part(above), curve) else {
+                return Err(self.wrong(line, "two parts, and a curve or 0"));
+            };
+            tree.forks.push(Fork { curve: (curve as usize).checked_sub(1), yaw, parts: [below, above] });
+        }
+        for _ in 0..cells {
+            let line = self.line()?;
+            let (cell, _) = self.flags(line)?;
+            let [begin, end] = self.signed::<2>(line, 8)?;
+            let (1.., 1..) = (begin, end) else { return Err(self.wrong(line, "two curves")) };
+            let yaw = self.of_line::<2>(line, 24)?;
+            tree.cells.push(Cell { yaw, curves: [begin as usize - 1, end as usize - 1], ..cell });
+            tree.coefficients.push(self.coefficients(&cell, quantities, YAW_COEFFICIENTS)?);
+        }
+        Ok(tree)
+    }
+
+    /// Reads whole numbers of eight columns each, from a column on.
+    fn signed<const N: usize>(&self, line: &str, from: usize) -> Result<[i64; N]> {
+        let mut out = [0; N];
+        for (k, number) in out.iter_mut().enumerate() {
+            let field = line.get(from + 8 * k..from + 8 * (k + 1)).map(str::trim);
+            let parsed = field.and_then(|field| field.parse().ok());
+            *number = parsed.ok_or_else(|| self.wrong(line, &format!("{N} whole numbers")))?;
+        }
+        Ok(out)
+    }
+
+    /// Reads the flags of a cell, and how it begins.
+    fn flags(&self, line: &str) -> Result<(Cell, Beginning)> {
         let flag = |k: usize| line.get(2 * k..2 * k + 2).and_then(|field| field.trim().parse::<usize>().ok());
         let lacks = |k: usize| flag(k).and_then(|code| Lacks::ALL.get(code).copied());
         let begins = flag(1).and_then(|code| Beginning::ALL.get(code).copied());
@@ -127,25 +218,23 @@ impl<'a> Deck<'a> {
         else {
             return Err(self.wrong(line, "four flags"));
         };
-        let lateral = self.of_line::<2>(line, 8)?;
-        Ok(Cell { lateral, begins, touches: touches == 1, lacks: [left, right] })
+        Ok((Cell { yaw: [0.0; 2], curves: [0; 2], touches: touches == 1, lacks: [left, right] }, begins))
     }
 
-    /// Appends the coefficients of a cell, in the order of the table.
-    fn coefficients(&mut self, cell: &Cell, quantities: &[Quantity], all: &mut Vec<f64>) -> Result<()> {
-        let (first, count) = (all.len(), quantities.len());
-        all.resize(first + COEFFICIENTS * count, f64::NAN);
+    /// Reads the coefficients of a cell, in the order of the table.
+    fn coefficients(&mut self, cell: &Cell, quantities: &[Quantity], powers: usize) -> Result<Vec<Values>> {
         if !cell.touches {
-            return Ok(());
+            return Ok(Vec::new());
         }
+        let mut all = vec![[f64::NAN; MOST]; powers * COEFFICIENTS];
         for (q, quantity) in quantities.iter().enumerate() {
-            for k in (0..COEFFICIENTS).step_by(3) {
+            for k in (0..all.len()).step_by(3) {
                 let three = self.numbers::<3>(0)?;
                 if exists(cell, quantity) {
-                    (0..3).for_each(|i| all[first + (k + i) * count + q] = three[i]);
+                    all[k..].iter_mut().zip(three).for_each(|(row, c)| row[q] = c);
                 }
             }
         }
-        Ok(())
+        Ok(all)
     }
 }

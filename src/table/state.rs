@@ -24,6 +24,16 @@ pub(super) struct Topology {
     along: [bool; 2],
 }
 
+/// What touches on one side.
+pub(super) type SideTopology = ([u32; 2], Lacks, bool);
+
+impl Topology {
+    /// Gives what touches on the left (0) or right (1) side.
+    pub fn side(&self, k: usize) -> SideTopology {
+        (self.elements[k], self.lacks[k], self.along[k])
+    }
+}
+
 /// A place that does not touch.
 #[derive(Debug, Clone, Copy)]
 struct NearMiss {
@@ -53,15 +63,16 @@ pub(super) struct State {
 /// below the 73° of [`WheelsetSearch::touch`].
 const STEEP: f64 = 3.0;
 
-/// Searches at one displacement after another.
+/// Searches at one displacement after another, under one yaw.
 pub(super) struct Sampler<'a> {
     search: WheelsetSearch<'a>,
     asked: &'a Asked,
+    yaw: f64,
 }
 
 impl<'a> Sampler<'a> {
-    pub fn new(system: &'a WheelsetOnTrack, asked: &'a Asked) -> Self {
-        Self { search: system.search(), asked }
+    pub fn new(system: &'a WheelsetOnTrack, asked: &'a Asked, yaw: f64) -> Self {
+        Self { search: system.search(), asked, yaw }
     }
 
     /// Searches at one displacement \[mm\], with near misses up to a gap `within` \[mm\].
@@ -88,9 +99,9 @@ impl<'a> Sampler<'a> {
         if !differ.contains(&true) {
             return None;
         }
-        let asked = self.asked;
+        let (roll, yaw) = (self.asked.roll, self.yaw);
         let mut holds = |lateral: f64| {
-            let position = position(asked, lateral);
+            let position = Position { lateral, yaw, roll };
             let Some(before) = self.search.heights(&position, &before) else { return false };
             let after = self.search.heights(&position, &after);
             // The wheel that comes down touches first where it has to stay highest.
@@ -110,7 +121,7 @@ impl<'a> Sampler<'a> {
 
     fn touch(&mut self, lateral: f64, within: f64, near: Option<&Places>) -> Result<State> {
         let pressed = self.asked.pressed;
-        let position = position(self.asked, lateral);
+        let position = Position { lateral, yaw: self.yaw, roll: self.asked.roll };
         let Some(touch) = self.search.touch_near(&position, &Selection { within, apart: APART }, near)?
         else {
             return Ok(State::off_rail(lateral));
@@ -136,10 +147,6 @@ impl<'a> Sampler<'a> {
         let topology = Some(Topology { elements: touch.places.elements(), lacks, along });
         Ok(State { lateral, topology, values, places, lowest: Some(touch.places), near, slopes })
     }
-}
-
-fn position(asked: &Asked, lateral: f64) -> Position {
-    Position { lateral, yaw: asked.yaw, roll: asked.roll }
 }
 
 /// Returns the values of one side, what does not exist, and whether its ellipse is longer along ξ.
@@ -195,6 +202,12 @@ impl State {
     /// Returns how far the places of contact are from those of another state \[mm\].
     pub fn moved(&self, other: &Self) -> f64 {
         self.places.iter().zip(&other.places).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// Returns what decides which quantities exist, and what they are of: what each side lacks, and which axis of its ellipse is the long
+    /// one; `None` where a wheel is off its rail.
+    pub fn exists(&self) -> Option<([Lacks; 2], [bool; 2])> {
+        self.topology.map(|topology| (topology.lacks, topology.along))
     }
 
     /// Returns the largest slope of a place of contact.

@@ -33,14 +33,17 @@ fn points() -> usize {
     std::env::var("WHEELRAIL_TABLE_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(2000)
 }
 
-/// Random displacements over the range, by Knuth's generator.
-fn random() -> Vec<f64> {
+/// Range of the yaws \[rad\] of tables over yaw.
+const YAWS: [f64; 2] = [-0.02, 0.02];
+
+/// Random displacements over the range and yaws over theirs, by Knuth's generator.
+fn random(lateral: [f64; 2], yaw: [f64; 2]) -> Vec<[f64; 2]> {
     let mut state = 36_u64;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    (0..points()).map(|_| RANGE[0] + (RANGE[1] - RANGE[0]) * next()).collect()
+    (0..points()).map(|_| [lateral, yaw].map(|[from, to]| from + (to - from) * next())).collect()
 }
 
 fn case(profiles: &str, more: &str, sides: &str) -> Result<Case> {
@@ -91,20 +94,28 @@ fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
     let mut values = vec![0.0; quantities.len()];
     let mut shares = vec![0.0_f64; quantities.len()];
     let mut exist = 0;
-    for lateral in random() {
-        table.fill(lateral, &mut values);
-        let at = Position { lateral, ..*position };
+    for [lateral, yaw] in random(table.about().lateral, table.about().yaw) {
+        table.fill(lateral, yaw, &mut values);
+        let at = Position { lateral, yaw, ..*position };
         let touch = search.touch(&at, &Selection { within: 0.0, apart: 0.0 })?;
-        let touch = touch.unwrap_or_else(|| panic!("{name}: no contact at {lateral} mm"));
+        let touch = touch.unwrap_or_else(|| panic!("{name}: no contact at {lateral} mm, {yaw} rad"));
         for (q, quantity) in quantities.iter().enumerate() {
             let direct = found(quantity, touch.roll, &touch.sides, case.question().modulus());
-            assert_eq!(values[q].is_nan(), direct.is_nan(), "{name}: {quantity:?} at {lateral} mm: {direct}");
+            assert_eq!(
+                values[q].is_nan(),
+                direct.is_nan(),
+                "{name}: {quantity:?} at {lateral} mm, {yaw} rad: {direct}"
+            );
             if direct.is_nan() {
                 continue;
             }
             exist += 1;
             let share = (values[q] - direct).abs() / quantity.error;
-            assert!(share <= 1.0, "{name}: {quantity:?} at {lateral} mm: {} for {direct}", values[q]);
+            assert!(
+                share <= 1.0,
+                "{name}: {quantity:?} at {lateral} mm, {yaw} rad: {} for {direct}",
+                values[q]
+            );
             shares[q] = shares[q].max(share);
         }
     }
@@ -132,7 +143,7 @@ fn tables_err_by_no_more_than_they_state() -> Result<()> {
         ("unlike sides", case(DRAWN, "", SIDES)?),
     ];
     for (name, case) in &cases {
-        let made = table(case, RANGE, 1e-3, true)?;
+        let made = table(case, RANGE, None, 1e-3, true)?;
         let over = made.quantities().iter().find(|quantity| quantity.error > quantity.tolerance);
         assert!(over.is_none(), "{name}: {over:?}");
         compare(name, case, &made)?;
@@ -141,28 +152,52 @@ fn tables_err_by_no_more_than_they_state() -> Result<()> {
 }
 
 #[test]
+fn tables_over_yaw_err_by_no_more_than_they_state() -> Result<()> {
+    let cases = [
+        ("drawn, over yaw", case(DRAWN, "", "")?, RANGE, YAWS),
+        ("measured, over yaw", case(MEASURED, "", "")?, [-3.0, 3.0], YAWS),
+        ("unlike sides, over yaw", case(DRAWN, "", SIDES)?, [-2.0, 2.0], [0.001, 0.02]),
+    ];
+    for (name, case, lateral, yaw) in &cases {
+        let made = table(case, *lateral, Some(*yaw), 1e-3, true)?;
+        let over = made.quantities().iter().find(|quantity| quantity.error > quantity.tolerance);
+        assert!(over.is_none(), "{name}: {over:?}");
+        assert!(made.about().beside_curves() <= 1e-6);
+        compare(name, case, &made)?;
+        let text = table_wrp(&made, name);
+        assert!(text.is_ascii() && text.lines().all(|line| line.len() < 80));
+        assert!(table_wrp(&ContactTable::read(&text)?, name) == text, "{name}: another table is read");
+    }
+    Ok(())
+}
+
+#[test]
 fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
     let case = case(DRAWN, ", yaw = 0.002", "")?;
-    let lateral = random();
-    let on = |threads: usize| -> Result<(String, Vec<u64>)> {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let made = table(&case, RANGE, 1e-3, true)?;
-            let numbers: Vec<usize> = (0..made.quantities().len()).rev().collect();
-            let mut all = vec![0.0; numbers.len() * lateral.len()];
-            made.fill_many(&lateral, &numbers, &mut all);
-            let mut row = vec![0.0; numbers.len()];
-            for (k, y) in lateral.iter().enumerate() {
-                made.fill(*y, &mut row);
-                let column = |(place, &number): (usize, &usize)| {
-                    all[place * lateral.len() + k].to_bits() == row[number].to_bits()
-                };
-                assert!(numbers.iter().enumerate().all(column), "{y}");
-            }
-            Ok((table_wrp(&made, "threads"), all.iter().map(|value| value.to_bits()).collect()))
-        })
-    };
-    let one = on(1)?;
-    assert!(on(2)? == one && on(5)? == one);
+    let places = random(RANGE, YAWS);
+    let [lateral, yaws] = [0, 1].map(|k| places.iter().map(|place| place[k]).collect::<Vec<f64>>());
+    for yaw in [None, Some([0.0, 0.01])] {
+        let on = |threads: usize| -> Result<(String, Vec<u64>)> {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let made = table(&case, RANGE, yaw, 1e-3, true)?;
+                let numbers: Vec<usize> = (0..made.quantities().len()).rev().collect();
+                let mut all = vec![0.0; numbers.len() * lateral.len()];
+                let yaws = if yaw.is_some() { yaws.as_slice() } else { &made.about().yaw[..1] };
+                made.fill_many(&lateral, yaws, &numbers, &mut all);
+                let mut row = vec![0.0; numbers.len()];
+                for (k, y) in lateral.iter().enumerate() {
+                    made.fill(*y, yaws[k % yaws.len()], &mut row);
+                    let column = |(place, &number): (usize, &usize)| {
+                        all[place * lateral.len() + k].to_bits() == row[number].to_bits()
+                    };
+                    assert!(numbers.iter().enumerate().all(column), "{y}");
+                }
+                Ok((table_wrp(&made, "threads"), all.iter().map(|value| value.to_bits()).collect()))
+            })
+        };
+        let one = on(1)?;
+        assert!(on(2)? == one && on(5)? == one);
+    }
     Ok(())
 }

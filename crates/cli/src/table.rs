@@ -13,11 +13,14 @@ use wheelrail::table::{Beginning, ContactTable};
 /// The scene, the range, the tolerance and the folder.
 #[derive(Debug, clap::Args)]
 pub(super) struct TableArguments {
-    /// Scene file with [track] and [wheelset], whose yaw and roll the table has.
+    /// Scene file with [track] and [wheelset], whose roll the table has, and whose yaw unless --yaw is given.
     scene: PathBuf,
     /// Range FROM:TO of the lateral displacement, mm.
     #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true)]
     lateral: String,
+    /// Range FROM:TO of the yaw, rad: the table is over both.
+    #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true)]
+    yaw: Option<String>,
     /// Tolerance of lengths, mm; those of angles, curvatures, approaches and pressures follow from it and stand in the file.
     #[arg(long, value_name = "MM", default_value_t = 1e-3, allow_negative_numbers = true)]
     tolerance: f64,
@@ -34,7 +37,9 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
     let progress = Progress::of("table", "scene");
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
-    let lateral = range(&arguments.lateral)?;
+    let lateral = range("--lateral", &arguments.lateral, "FROM:TO in mm", "-9:9")?;
+    let yaw =
+        arguments.yaw.as_ref().map(|yaw| range("--yaw", yaw, "FROM:TO in rad", "-0.02:0.02")).transpose()?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
     let default = || PathBuf::from("output").join(format!("{name}-table"));
     let target = arguments.out.clone().unwrap_or_else(default);
@@ -45,7 +50,7 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
     }
     let folder = Folder::create(&target, TABLE_FOLDER)?;
     progress.at("searches");
-    let made = tabulate(&case, lateral, arguments.tolerance, arguments.hertz).map_err(in_scene)?;
+    let made = tabulate(&case, lateral, yaw, arguments.tolerance, arguments.hertz).map_err(in_scene)?;
     progress.at("files");
     write_table(&made, scene.title.as_deref().unwrap_or(&name), &folder)?;
     folder.commit()?;
@@ -55,19 +60,21 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
 }
 
 /// Reads FROM:TO.
-fn range(text: &str) -> Result<[f64; 2]> {
+fn range(flag: &str, text: &str, expected: &str, example: &str) -> Result<[f64; 2]> {
     let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
     parts
         .and_then(|parts| <[f64; 2]>::try_from(parts).ok())
-        .ok_or_else(|| Error::new("--lateral", text, "FROM:TO in mm", "for example --lateral -9:9"))
+        .ok_or_else(|| Error::new(flag, text, expected, format!("for example {flag} {example}")))
 }
 
 /// Says what is in the table.
 fn about(table: &ContactTable) -> String {
-    let count = |kind| table.places(kind).count();
-    let [hops, joints] =
-        [(Beginning::Hop, "hop"), (Beginning::Joint, "joint")].map(|(kind, name)| counted(count(kind), name));
-    let mut text = format!("{}, {hops}, {joints}\n", counted(table.cells().len(), "cell"));
+    let middle = table.about().yaw[0] + (table.about().yaw[1] - table.about().yaw[0]) / 2.0;
+    let [hops, joints] = [(Beginning::Hop, "hop"), (Beginning::Joint, "joint")]
+        .map(|(kind, name)| counted(table.places(kind, middle).len(), name));
+    let under =
+        if table.about().over_yaw() { format!(" under a yaw of {middle} rad") } else { String::new() };
+    let mut text = format!("{}, {hops}, {joints}{under}\n", counted(table.cells().len(), "cell"));
     for quantity in table.quantities() {
         let (name, side) = (quantity.name, quantity.side());
         text += &format!(
@@ -80,8 +87,11 @@ fn about(table: &ContactTable) -> String {
 
 /// Says what a user should know before using the table.
 fn remarks(table: &ContactTable) -> Vec<String> {
-    let missing = table.off_rail().map(|[from, to]| {
-        format!("no contact from {from} to {to} mm: a wheel is off its rail, and the table has nothing there")
+    let under = if table.about().over_yaw() { " under some yaws" } else { "" };
+    let missing = table.off_rail_somewhere().into_iter().map(|[from, to]| {
+        format!(
+            "no contact from {from} to {to} mm{under}: a wheel is off its rail, and the table has nothing there"
+        )
     });
     let over =
         table.quantities().iter().filter(|quantity| quantity.error > quantity.tolerance).map(|quantity| {

@@ -19,9 +19,9 @@ const LARGEST: usize = 1 << 30;
 
 /// Tabulate the contact of a scene's wheelset over a range of lateral displacements in mm, as polynomials with a stated error.
 ///
-/// `lateral` is the range, `tolerance` that of lengths in mm; yaw and roll are those of the scene. `hertz` adds Hertz's ellipse, approach
-/// and largest pressure under the scene's load or approach. `out` is a folder that gets the table as `table.wrp`, `table.nc` and
-/// `table.csv`.
+/// `lateral` is the range, `yaw` a range in rad, without which the table is under the yaw of the scene; `tolerance` is that of lengths
+/// in mm; the roll is that of the scene. `hertz` adds Hertz's ellipse, approach and largest pressure under the scene's load or approach.
+/// `out` is a folder that gets the table as `table.wrp`, `table.nc` and `table.csv`.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp
@@ -39,11 +39,12 @@ const LARGEST: usize = 1 << 30;
 ///
 /// Raises InputError for a scene without a wheelset, a roll by loads, ellipses without a load or approach, a range or tolerance out of bounds.
 #[pyfunction]
-#[pyo3(signature = (path, lateral, *, tolerance = 1e-3, hertz = false, out = None))]
+#[pyo3(signature = (path, lateral, *, yaw = None, tolerance = 1e-3, hertz = false, out = None))]
 pub(crate) fn table(
     py: Python<'_>,
     path: PathBuf,
     lateral: [f64; 2],
+    yaw: Option<[f64; 2]>,
     tolerance: f64,
     hertz: bool,
     out: Option<PathBuf>,
@@ -52,7 +53,7 @@ pub(crate) fn table(
         let scene = scene::load(&path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let case = scene::resolve(&scene, path.parent().unwrap_or(Path::new(".")), &name)?;
-        let made = case::table(&case, lateral, tolerance, hertz)?;
+        let made = case::table(&case, lateral, yaw, tolerance, hertz)?;
         watch.go_on()?;
         if let Some(out) = out {
             let folder = Folder::create(&out, TABLE_FOLDER)?;
@@ -64,10 +65,10 @@ pub(crate) fn table(
     Ok(ContactTable { table: made })
 }
 
-/// A contact table: places, angles, radii and curvatures of both wheels over the lateral displacement.
+/// A contact table: places, angles, radii and curvatures of both wheels over the lateral displacement, and over yaw.
 ///
-/// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)` gives the quantities of the wheelset by their names, and
-/// under "left" and "right" those of each side, an array each; what does not exist is NaN.
+/// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)`, or `table(lateral, yaw)` over yaw, gives the quantities
+/// of the wheelset by their names, and under "left" and "right" those of each side, an array each; what does not exist is NaN.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp
@@ -97,28 +98,22 @@ impl ContactTable {
         Ok(Self { table: table.or_raise()? })
     }
 
-    /// Look the quantities up at lateral displacements in mm; `yaw` in rad may be given, as a number, and has to be that of the table.
+    /// Look the quantities up at lateral displacements in mm and yaws in rad, as many or one.
     ///
-    /// `quantities` are the names that are wanted, all unless given. It runs on all threads without the GIL.
+    /// Under one yaw `yaw` may be left out, and has to be that of the table. `quantities` are the names that are wanted, all unless given. It
+    /// runs on all threads without the GIL.
     ///
-    /// Raises InputError for another yaw, and unknown names.
+    /// Raises InputError for another yaw than the table's one, none over a range, another number of yaws, and unknown names.
     #[pyo3(signature = (lateral, yaw = None, *, quantities = None))]
     fn __call__<'py>(
         &self,
         py: Python<'py>,
         lateral: &Bound<'py, PyAny>,
-        yaw: Option<f64>,
+        yaw: Option<&Bound<'py, PyAny>>,
         quantities: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        if let Some(yaw) = yaw.filter(|yaw| *yaw != self.table.yaw()) {
-            let expected = format!("{} rad, the yaw of the table", self.table.yaw());
-            return Err(exception(Error::new(
-                "yaw",
-                yaw.to_string(),
-                expected,
-                "make a table with this yaw",
-            )));
-        }
+        let lateral = values("lateral", lateral)?;
+        let yaw = self.yaws(yaw, lateral.len())?;
         let known = self.table.quantities();
         let wanted = |name: &str| quantities.as_ref().is_none_or(|names| names.iter().any(|own| own == name));
         let is_unknown = |name: &&String| known.iter().all(|own| own.name != **name);
@@ -127,9 +122,8 @@ impl ContactTable {
             return Err(exception(Error::new("quantities", found, "names of `errors`", "correct it")));
         }
         let numbers: Vec<usize> = (0..known.len()).filter(|q| wanted(known[*q].name)).collect();
-        let lateral = values("lateral", lateral)?;
         let mut columns = vec![0.0; lateral.len() * numbers.len()];
-        detached(py, || self.table.fill_many(&lateral, &numbers, &mut columns))?;
+        detached(py, || self.table.fill_many(&lateral, &yaw, &numbers, &mut columns))?;
         let columns = PyArray1::from_vec(py, columns).reshape([numbers.len(), lateral.len()])?;
         self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
     }
@@ -151,40 +145,87 @@ impl ContactTable {
     /// The range of the lateral displacement in mm.
     #[getter]
     fn lateral(&self) -> (f64, f64) {
-        self.table.lateral().into()
+        self.table.about().lateral.into()
     }
 
-    /// The yaw in rad that all displacements have.
+    /// The range of the yaw in rad; both ends are equal where all displacements have one yaw.
     #[getter]
-    fn yaw(&self) -> f64 {
-        self.table.yaw()
+    fn yaw(&self) -> (f64, f64) {
+        self.table.about().yaw.into()
     }
 
-    /// The intervals (from, to) of lateral displacements in mm in which a wheel is off its rail, so that the table has nothing there.
+    /// The distance in mm from hops, joints and edges within which the table may give the values of their other side.
     #[getter]
-    fn off_rail(&self) -> Vec<(f64, f64)> {
-        self.table.off_rail().map(Into::into).collect()
+    fn beside_curves(&self) -> f64 {
+        self.table.about().beside_curves()
     }
 
-    /// The lateral displacements in mm at which contact hops to another place.
-    #[getter]
-    fn hops(&self) -> Vec<f64> {
-        self.table.places(Beginning::Hop).collect()
+    /// The intervals (from, to) of lateral displacements in mm in which a wheel is off its rail under a yaw in rad, so that the table has
+    /// nothing there.
+    #[pyo3(signature = (yaw = None))]
+    fn off_rail(&self, yaw: Option<f64>) -> PyResult<Vec<(f64, f64)>> {
+        Ok(self.table.off_rail(self.one_yaw(yaw)?).into_iter().map(Into::into).collect())
     }
 
-    /// The lateral displacements in mm at which contact crosses a joint of a profile.
-    #[getter]
-    fn joints(&self) -> Vec<f64> {
-        self.table.places(Beginning::Joint).collect()
+    /// The lateral displacements in mm at which contact hops to another place under a yaw in rad.
+    #[pyo3(signature = (yaw = None))]
+    fn hops(&self, yaw: Option<f64>) -> PyResult<Vec<f64>> {
+        Ok(self.table.places(Beginning::Hop, self.one_yaw(yaw)?))
+    }
+
+    /// The lateral displacements in mm at which contact crosses a joint of a profile under a yaw in rad.
+    #[pyo3(signature = (yaw = None))]
+    fn joints(&self, yaw: Option<f64>) -> PyResult<Vec<f64>> {
+        Ok(self.table.places(Beginning::Joint, self.one_yaw(yaw)?))
     }
 
     fn __repr__(&self) -> String {
-        let [from, to] = self.table.lateral();
+        let [from, to] = self.table.about().lateral;
         format!("ContactTable of {} cells from {from} to {to} mm", self.table.cells().len())
     }
 }
 
 impl ContactTable {
+    /// Gives the yaws of so many displacements: the table's own, one, or as many.
+    fn yaws(&self, yaw: Option<&Bound<'_, PyAny>>, count: usize) -> PyResult<Vec<f64>> {
+        let about = self.table.about();
+        let given = yaw.map(|yaw| yaw.extract().map_or_else(|_| values("yaw", yaw), |one| Ok(vec![one])));
+        match given.transpose()? {
+            Some(all) if about.over_yaw() => match all.len() {
+                1 => Ok(all),
+                many if many == count => Ok(all),
+                many => Err(exception(Error::new(
+                    "yaw",
+                    format!("{many} values"),
+                    format!("one, or {count} as of lateral"),
+                    "give as many",
+                ))),
+            },
+            Some(all) => {
+                all.iter().try_for_each(|yaw| self.one_yaw(Some(*yaw)).map(drop))?;
+                Ok(vec![about.yaw[0]])
+            }
+            None => Ok(vec![self.one_yaw(None)?]),
+        }
+    }
+
+    /// Gives the yaw that is meant: that of a table under one may be left out.
+    fn one_yaw(&self, yaw: Option<f64>) -> PyResult<f64> {
+        let about = self.table.about();
+        match yaw {
+            None if about.over_yaw() => {
+                let (expected, advice) = ("a yaw in rad", "the table is over yaw: give one");
+                Err(exception(Error::new("yaw", "none", expected, advice)))
+            }
+            Some(yaw) if !about.over_yaw() && yaw != about.yaw[0] => {
+                let expected = format!("{} rad, the yaw of the table", about.yaw[0]);
+                let advice = "make a table with this yaw";
+                Err(exception(Error::new("yaw", yaw.to_string(), expected, advice)))
+            }
+            yaw => Ok(yaw.unwrap_or(about.yaw[0])),
+        }
+    }
+
     /// Puts what belongs to quantities under their names, sides in dicts of their own.
     fn by_name<'py>(
         &self,

@@ -1,54 +1,84 @@
-//! Writes `table.wrp`: a contact table in the fixed columns of the other decks.
-//!
-//! ```text
-//! WRTABLE    1 mm                            (a8,i4,1x,a8)   magic, version, unit
-//!       18                                   (i8)            comment lines that follow
-//! # …
-//! n_cells n_quantities n_coefficients        (3i8)           9 coefficients
-//! from to                                    (2e25.16)       range of the lateral displacement
-//! yaw radius tolerance                       (3e25.16)       rad, nominal rolling radius, tolerance of lengths
-//! name needs side tolerance error            (a18,i2,1x,a8,2e25.16)  n_quantities records
-//! touches begins lacks lacks from to         (4i2,2e25.16)   n_cells times: flags, ends of the cell
-//! c0 … c8                                    3 × (3e25.16)   … and if touches = 1, for each quantity
-//! END
-//! ```
+//! Writes `table.wrp`: a contact table in the fixed columns of the other decks; [`crate::docs::tables`] has the grammar.
 
 use super::super::model::plain;
 use super::text::line;
-use crate::table::{BREAK, COEFFICIENTS, ContactTable, Lacks, TOLERANCE_LENGTH};
+use crate::table::{COEFFICIENTS, ContactTable, Lacks, Part, TOLERANCE_LENGTH, YAW_COEFFICIENTS};
 
 /// Writes `table.wrp`; `title` is that of its scene.
 pub fn table_wrp(table: &ContactTable, title: &str) -> String {
-    let comments = comments(table, title);
-    let (cells, quantities) = (table.cells(), table.quantities());
-    let mut text = format!("{:<8}{:>4} {:<8}\n{:>8}\n", "WRTABLE", 1, "mm", comments.len());
+    let (comments, about) = (comments(table, title), table.about());
+    let (cells, quantities, over_yaw) = (table.cells(), table.quantities(), about.over_yaw());
+    let version = if over_yaw { 2 } else { 1 };
+    let mut text = format!("{:<8}{version:>4} {:<8}\n{:>8}\n", "WRTABLE", "mm", comments.len());
     comments.iter().for_each(|comment| text += &format!("# {comment}\n"));
-    text += &format!("{:>8}{:>8}{:>8}\n", cells.len(), quantities.len(), COEFFICIENTS);
-    text += &line(&table.lateral());
-    text += &line(&[table.yaw(), table.radius(), table.tolerance()]);
+    text += &format!("{:>8}{:>8}{:>8}", cells.len(), quantities.len(), COEFFICIENTS);
+    if over_yaw {
+        text += &format!("{:>8}{:>8}{:>8}\n", YAW_COEFFICIENTS, table.curves().len(), table.forks().len());
+        text += &line(&about.lateral);
+        text += &line(&about.yaw);
+        text += &line(&[about.radius, about.tolerance, about.beside_curves()]);
+    } else {
+        text += "\n";
+        text += &line(&about.lateral);
+        text += &line(&[about.yaw[0], about.radius, about.tolerance]);
+    }
     for quantity in quantities {
         text += &format!("{:<18}{:>2} {:<8}", quantity.name, quantity.needs.code(), quantity.side());
         text += &line(&[quantity.tolerance, quantity.error]);
     }
+    if over_yaw {
+        put_tree(&mut text, table);
+    }
     for (c, cell) in cells.iter().enumerate() {
         let [left, right] = cell.lacks.map(Lacks::code);
-        text += &format!("{:>2}{:>2}{left:>2}{right:>2}", u8::from(cell.touches), cell.begins.code());
-        text += &line(&cell.lateral);
+        text += &format!("{:>2}{:>2}{left:>2}{right:>2}", u8::from(cell.touches), table.begins(c).code());
+        if over_yaw {
+            let [begin, end] = cell.curves.map(|curve| curve + 1);
+            text += &format!("{begin:>8}{end:>8}");
+            text += &line(&cell.yaw);
+        } else {
+            text += &line(&table.ends(c, about.yaw[0]));
+        }
         if !cell.touches {
             continue;
         }
         for q in 0..quantities.len() {
-            let coefficients = table.coefficients(c, q).map(|c| if c.is_nan() { 0.0 } else { c });
-            coefficients.chunks_exact(3).for_each(|three| text += &line(three));
+            for j in 0..about.yaw_coefficients() {
+                let coefficients = table.coefficients(c, q, j).map(|c| if c.is_nan() { 0.0 } else { c });
+                coefficients.chunks_exact(3).for_each(|three| text += &line(three));
+            }
         }
     }
     text + "END\n"
 }
 
+/// Writes the curves and forks of a table over yaw.
+fn put_tree(text: &mut String, table: &ContactTable) {
+    for curve in table.curves() {
+        *text += &format!("{:>8}", curve.kind.code());
+        *text += &line(&curve.yaw);
+        curve.coefficients.chunks(3).for_each(|three| *text += &line(three));
+    }
+    for fork in table.forks() {
+        for part in fork.parts {
+            let code = match part {
+                Part::Fork(fork) => (fork + 1).to_string(),
+                Part::Cell(cell) => format!("-{}", cell + 1),
+            };
+            *text += &format!("{code:>8}");
+        }
+        *text += &format!("{:>8}", fork.curve.map_or(0, |curve| curve + 1));
+        *text += &line(&[fork.yaw]);
+    }
+}
+
 /// Explains the file.
 fn comments(table: &ContactTable, title: &str) -> Vec<String> {
-    let off = table.off_rail().map(|[from, to]| format!("off the rail, without values: {from} to {to}"));
-    let lines = [
+    let about = table.about();
+    let under = if about.over_yaw() { " under some yaws" } else { "" };
+    let off = |[from, to]: [f64; 2]| format!("off the rail, without values{under}: {from} to {to}");
+    let off = table.off_rail_somewhere().into_iter().map(off);
+    let before = [
         format!("title: {title}"),
         format!("written by wheelrail {}: contact of a wheelset over y", env!("CARGO_PKG_VERSION")),
         "y: lateral displacement of the axle's middle, mm, + to the right".into(),
@@ -56,20 +86,52 @@ fn comments(table: &ContactTable, title: &str) -> Vec<String> {
         "the profile axes of each side, x towards its field side".into(),
         "separation s = a_xi xi^2 + c_xi_eta xi eta + b_eta eta^2 at the contact".into(),
         "hertz_*: Hertz's ellipse of the lowest place alone under the scene's load".into(),
-        "head: n_cells n_quantities n_coefficients (3i8); from to (2e25.16);".into(),
-        "yaw, nominal radius, tolerance of lengths (3e25.16)".into(),
-        "quantity (a18,i2,1x,a8,2e25.16): name needs side tolerance largest_error".into(),
-        "cell (4i2,2e25.16): touches begins lacks_left lacks_right from to; begins".into(),
-        "0 smoothly 1 at a joint 2 at a hop 3 at an edge; touches = 0: a wheel is".into(),
+    ];
+    let behind = [
         "off its rail and no coefficients follow; a quantity exists where its needs".into(),
         "(0 contact 1 curvatures 2 ellipse) + lacks of its side are at most 2".into(),
-        "then for each quantity c0..c8 (3e25.16): value = sum of c_k t^k with".into(),
-        "t = (2 y - from - to) / (to - from)".into(),
-        format!("largest_error: twice the largest difference from direct searches; {BREAK:e} mm"),
+        format!(
+            "largest_error: twice the largest difference from direct searches; {:e} mm",
+            about.beside_curves()
+        ),
         "around hops and joints are left out".into(),
         format!("tolerance: angles over the nominal radius, curvatures over ({TOLERANCE_LENGTH} mm)^2,"),
         format!("approach x {TOLERANCE_LENGTH} mm / radius, pressures x 1000 N/mm2 / {TOLERANCE_LENGTH} mm"),
     ];
+    let grammar: &[&str] = if about.over_yaw() { &OVER_YAW } else { &UNDER_ONE_YAW };
     debug_assert!(table.quantities().iter().all(|quantity| quantity.name.len() <= 18));
-    lines.into_iter().chain(off).map(|line| plain(&line)).collect()
+    let grammar = grammar.iter().map(|line| (*line).to_string());
+    before.into_iter().chain(grammar).chain(behind).chain(off).map(|line| plain(&line)).collect()
 }
+
+/// The grammar of a table under one yaw.
+const UNDER_ONE_YAW: [&str; 8] = [
+    "head: n_cells n_quantities n_coefficients (3i8); from to (2e25.16);",
+    "yaw, nominal radius, tolerance of lengths (3e25.16)",
+    "quantity (a18,i2,1x,a8,2e25.16): name needs side tolerance largest_error",
+    "cell (4i2,2e25.16): touches begins lacks_left lacks_right from to,",
+    "then for each quantity c0..c8 (3e25.16): value = sum of c_k t^k with",
+    "t = (2 y - from - to) / (to - from)",
+    "begins: 0 smoothly 1 at a joint 2 at a hop 3 at an edge",
+    "touches = 0: a wheel is",
+];
+
+/// The grammar of a table over yaw.
+const OVER_YAW: [&str; 16] = [
+    "head: n_cells n_quantities 9 5 n_curves n_forks (6i8); from to (2e25.16);",
+    "yaw_from yaw_to, rad (2e25.16); radius, tolerance, beside_curves (3e25.16)",
+    "quantity (a18,i2,1x,a8,2e25.16): name needs side tolerance largest_error",
+    "curve (i8,2e25.16): kind yaw_from yaw_to, then c0..c4 (3e25.16):",
+    "y = sum of c_j u^j with u = (2 yaw - yaw_from - yaw_to)/(yaw_to - yaw_from)",
+    "fork (3i8,e25.16): below above curve yaw. Begin at fork 1; go below where",
+    "y < curve, or yaw < yaw if curve = 0; otherwise above; n > 0 is fork n,",
+    "n < 0 is cell -n. Without forks the table is cell 1",
+    "cell (4i2,2i8,2e25.16): touches begins lacks_left lacks_right curve_from",
+    "curve_to yaw_from yaw_to, then for each quantity and j = 0..4 c_j0..c_j8",
+    "(3e25.16): value = sum of c_jk u^j t^k with u of the cell's yaws (0 if they",
+    "are equal), t = (2 y - from - to) / (to - from) between its curves at this",
+    "yaw, in -1 to 1 (0 if to <= from)",
+    "kind, begins: 0 smoothly 1 at a joint 2 at a hop 3 at an edge",
+    "beside_curves: mm from curves within which values may be the other side's",
+    "touches = 0: a wheel is",
+];

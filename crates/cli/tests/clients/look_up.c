@@ -1,10 +1,10 @@
-/* Looks all quantities of a table up at the displacements of a file of doubles, and writes them as doubles: look_up TABLE IN OUT */
+/* Looks all quantities of a table up at the displacements and yaws of a file of doubles, in pairs, and writes them as doubles: look_up TABLE IN OUT */
 #include "wheelrail_table.h"
 
 int main(int count, char **arguments)
 {
     wr_table table;
-    double lateral, values[WR_MOST];
+    double at[2], values[WR_MOST];
     const char *fault = count == 4 ? wr_table_read(&table, arguments[1]) : "look_up TABLE IN OUT";
     FILE *in, *out;
     if (fault) {
@@ -14,8 +14,8 @@ int main(int count, char **arguments)
     in = fopen(arguments[2], "rb");
     out = fopen(arguments[3], "wb");
     if (!in || !out || wr_table_number(&table, "roll_rad", "wheelset") != 0 || wr_table_number(&table, "x", "left") != -1) return 2;
-    while (fread(&lateral, sizeof lateral, 1, in) == 1) {
-        int touches = wr_table_at(&table, lateral, values);
+    while (fread(at, sizeof at, 1, in) == 1) {
+        int touches = wr_table_at(&table, at[0], at[1], values);
         if (touches == isnan(values[0])) return 3;
         fwrite(values, sizeof *values, (size_t)table.quantities, out);
     }

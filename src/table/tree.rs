@@ -1,0 +1,131 @@
+//! The tree by which the cell of a lateral displacement and a yaw is found.
+
+use super::about::About;
+use super::cell::{Beginning, Cell};
+use super::curve::Curve;
+use super::quantity::Values;
+use super::region::Branch;
+
+/// A part of the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The fork with this number divides it.
+    Fork(usize),
+    /// It is the cell with this number.
+    Cell(usize),
+}
+
+/// What divides a part of the plane in two: a curve, or a yaw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fork {
+    /// The number of the curve; `None` where it is a yaw.
+    pub curve: Option<usize>,
+    /// The yaw \[rad\]; 0 where it is a curve.
+    pub yaw: f64,
+    /// What is below it, and what begins at it.
+    pub parts: [Part; 2],
+}
+
+/// Cells, the curves between them, and the forks on the way to them. The first fork is where the way begins; children have greater numbers.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Tree {
+    pub curves: Vec<Curve>,
+    pub forks: Vec<Fork>,
+    pub cells: Vec<Cell>,
+    /// Of each cell the coefficients of u^j tᵏ of all quantities, at j · [`COEFFICIENTS`](super::COEFFICIENTS) + k; none where nothing
+    /// touches, not a number where a quantity does not exist.
+    pub coefficients: Vec<Vec<Values>>,
+}
+
+impl Tree {
+    /// Makes the tree of a divided range.
+    pub fn of(branch: Branch, about: About) -> Self {
+        let mut tree = Self::default();
+        let ends = about.lateral.map(|y| tree.curve(Curve::constant(y, about.yaw, Beginning::Edge)));
+        tree.add(branch, ends);
+        tree
+    }
+
+    /// Makes the tree of a table under one yaw from its cells in ascending order, with their ends \[mm\] and how they begin; without
+    /// coefficients.
+    pub fn of_cells(cells: Vec<([f64; 2], Beginning, Cell)>, yaw: [f64; 2]) -> Self {
+        let mut tree = Self::default();
+        let last = cells.last().map(|([_, to], ..)| (*to, Beginning::Edge));
+        let begins = cells.iter().map(|([from, _], begins, _)| (*from, *begins));
+        for (y, kind) in begins.chain(last) {
+            tree.curve(Curve::constant(y, yaw, kind));
+        }
+        tree.cells = cells
+            .into_iter()
+            .enumerate()
+            .map(|(c, (.., cell))| Cell { curves: [c, c + 1], ..cell })
+            .collect();
+        let curves: Vec<usize> = (1..tree.cells.len()).collect();
+        if !curves.is_empty() {
+            tree.fork_row(tree.cells.len(), &curves, &mut |_, cell| Part::Cell(cell));
+        }
+        tree
+    }
+
+    fn curve(&mut self, curve: Curve) -> usize {
+        self.curves.push(curve);
+        self.curves.len() - 1
+    }
+
+    /// Adds a branch between two curves.
+    fn add(&mut self, branch: Branch, [begin, end]: [usize; 2]) -> Part {
+        match branch {
+            Branch::Cell(fitted) => {
+                self.cells.push(Cell { curves: [begin, end], ..fitted.cell });
+                self.coefficients.push(fitted.coefficients.into_iter().flatten().collect());
+                Part::Cell(self.cells.len() - 1)
+            }
+            Branch::Yaw(yaw, parts) => {
+                let fork = self.fork(None, yaw);
+                let [below, above] = *parts;
+                let parts = [self.add(below, [begin, end]), self.add(above, [begin, end])];
+                self.forks[fork].parts = parts;
+                Part::Fork(fork)
+            }
+            Branch::Along(parts, curves) => {
+                let curves: Vec<usize> = curves.into_iter().map(|curve| self.curve(curve)).collect();
+                let bounds = [&[begin], curves.as_slice(), &[end]].concat();
+                let mut parts: Vec<Option<Branch>> = parts.into_iter().map(Some).collect();
+                self.fork_row(parts.len(), &curves, &mut |tree, at| match parts[at].take() {
+                    Some(part) => tree.add(part, [bounds[at], bounds[at + 1]]),
+                    None => Part::Cell(0),
+                })
+            }
+        }
+    }
+
+    fn fork(&mut self, curve: Option<usize>, yaw: f64) -> usize {
+        self.forks.push(Fork { curve, yaw, parts: [Part::Cell(0); 2] });
+        self.forks.len() - 1
+    }
+
+    /// Adds the forks between so many parts in a row, with the curves between them, and the parts by `add`.
+    fn fork_row(
+        &mut self,
+        count: usize,
+        curves: &[usize],
+        add: &mut dyn FnMut(&mut Self, usize) -> Part,
+    ) -> Part {
+        fn among(
+            tree: &mut Tree,
+            [from, to]: [usize; 2],
+            curves: &[usize],
+            add: &mut dyn FnMut(&mut Tree, usize) -> Part,
+        ) -> Part {
+            if to - from == 1 {
+                return add(tree, from);
+            }
+            let middle = from + (to - from) / 2;
+            let fork = tree.fork(Some(curves[middle - 1]), 0.0);
+            let parts = [among(tree, [from, middle], curves, add), among(tree, [middle, to], curves, add)];
+            tree.forks[fork].parts = parts;
+            Part::Fork(fork)
+        }
+        among(self, [0, count], curves, add)
+    }
+}
