@@ -1,7 +1,7 @@
 //! What the page of measured profiles shows.
 
 use crate::export::{MeasuredPage, MeasuresPage};
-use crate::measure::{MeasureOptions, Overlay, Quantity, Row, RowColumns, overlay};
+use crate::measure::{MeasureOptions, Overlay, Quantity, Row, RowColumns, in_micrometres, overlay};
 use crate::profile::{Profile, trace};
 
 /// Distance of the points of a profile without a nominal \[mm\].
@@ -60,9 +60,10 @@ fn file(
         let off = measures?.if_off(quantity).map_or_else(String::new, |off| format!("±\u{a0}{off:.3}"));
         let interval = measures?.spread(quantity).map_or_else(String::new, |of| {
             let error = of.low_error.max(of.high_error);
-            format!("{:.3} to\u{a0}{:.3} (±\u{a0}{error:.3})", of.low, of.high)
+            let [low, high] = [of.low, of.high].map(in_micrometres);
+            format!("{low} to\u{a0}{high} (±\u{a0}{error:.3})")
         });
-        let value = format!("{value:.3}\u{a0}{}", quantity.unit());
+        let value = format!("{}\u{a0}{}", in_micrometres(value), quantity.unit());
         Some([quantity.text().into(), value, off, interval])
     });
     MeasuredPage {

@@ -28,7 +28,7 @@ use crate::error::{Error, Result};
 use crate::files::{KeptFolder, Names};
 use crate::placement::Pair;
 use crate::profile::standards;
-use crate::scene::{self, Scene};
+use crate::scene::{self, ProfileData, Scene};
 use crate::search::Roll;
 use listed::{Listed, Number, Pairs};
 use part::Part;
@@ -98,11 +98,19 @@ impl Fleet {
     /// No profile is read.
     ///
     /// # Errors
-    /// A scene without wheelset or with a given roll, or with anything else wrong but its profiles; lists that cannot be read.
+    /// A scene without wheelset or with a given roll, or with anything else wrong but its profiles; lists that cannot be read; no rails.
     pub fn new(scene: Scene, folder: &Path, wheels: &Path, rails: Option<&str>) -> Result<Self> {
         checked(&scene).map_err(|error| error.within("scene"))?;
         let wheelsets = list::wheelsets(wheels)?;
+        let sides = [&scene.left, &scene.right].into_iter().flatten();
+        let own =
+            sides.filter_map(|side| side.rail.as_ref()).chain([&scene.rail]).any(ProfileData::has_source);
         let sections = match rails {
+            None if !own && wheelsets.iter().any(|wheelset| wheelset.rails.is_none()) => {
+                let expected =
+                    "a folder of sections or a built-in name, columns of the table, or a profile in [rail]";
+                return Err(Error::new("rails", "none", expected, "give --rails"));
+            }
             None => vec![None],
             Some(rails) if wheelsets.iter().all(|wheelset| wheelset.rails.is_none()) => {
                 list::rails(rails)?.into_iter().map(Some).collect()

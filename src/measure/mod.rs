@@ -33,4 +33,5 @@ pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
 pub use repeats::repeated;
+pub(crate) use rows::in_micrometres;
 pub use rows::{Row, RowColumns, csv, json, table};

@@ -131,6 +131,11 @@ pub fn json(rows: &[Row], columns: RowColumns) -> String {
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
+/// Writes a number with three decimals, 0 without a sign.
+pub(crate) fn in_micrometres(value: f64) -> String {
+    format!("{:.3}", (1e3 * value).round() / 1e3 + 0.0)
+}
+
 /// Writes rows as a table of the quantities that any of them has, with alignments, broken limits and findings below it.
 pub fn table(rows: &[Row], columns: RowColumns) -> String {
     let of = |row: &Row, quantity| {
@@ -145,8 +150,8 @@ pub fn table(rows: &[Row], columns: RowColumns) -> String {
     for row in rows {
         let number = |&quantity: &Quantity| match of(row, quantity) {
             None => "-".to_owned(),
-            Some((value, None)) => format!("{value:.3}"),
-            Some((value, Some(off))) => format!("{value:.3} ±{off:.3}"),
+            Some((value, None)) => in_micrometres(value),
+            Some((value, Some(off))) => format!("{} ±{off:.3}", in_micrometres(value)),
         };
         let texts = [row.file.clone(), row.side.map_or("-", name).to_owned()];
         lines.push(texts.into_iter().chain(shown.iter().map(number)).collect());
@@ -203,4 +208,15 @@ fn below_each_other(lines: &[Vec<String>]) -> String {
         text += &format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_has_no_sign() {
+        let texts = [-1e-4, -0.0, -6e-4, 0.0312].map(in_micrometres);
+        assert_eq!(texts, ["0.000", "0.000", "-0.001", "0.031"]);
+    }
 }

@@ -57,6 +57,11 @@ measured_options! {
 measured_options! { @method ProfileData }
 
 impl ProfileData {
+    /// Tells whether the source of a profile is given.
+    pub fn has_source(&self) -> bool {
+        self.profile.is_some() || self.file.is_some() || self.segments.is_some()
+    }
+
     /// Tells whether nothing is given.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()

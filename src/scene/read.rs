@@ -214,7 +214,7 @@ mod tests {
     fn a_misspelt_key_is_named_with_its_line_and_the_nearest_one() {
         let text = SCENE.replace("wheel_x", "wheel_z");
         let error = parse::<Scene>(&text, false).err().map(|e| e.to_string());
-        let expected = "line 8: found `wheel_z`; expected one of rail_x, wheel_x, offset, roll, yaw, within, along; perhaps `wheel_x` is meant";
+        let expected = "line 8: found `wheel_z`; expected one of rail_x, wheel_x, offset, roll, yaw, within, along, pitch; perhaps `wheel_x` is meant";
         assert_eq!(error.as_deref(), Some(expected));
     }
 

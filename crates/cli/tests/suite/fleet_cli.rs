@@ -243,4 +243,6 @@ fn what_no_pair_can_be_made_of_ends_the_run_before_it_begins() {
             said(&output)
         );
     }
+    let output = run(here, &["--wheels", "wheels", "--out", "o"], 2);
+    assert!(said(&output).contains("rails: found none; expected a folder of sections"), "{}", said(&output));
 }
