@@ -33,5 +33,6 @@ pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
 pub use repeats::repeated;
+#[cfg(feature = "files")]
 pub(crate) use rows::in_micrometres;
 pub use rows::{Row, RowColumns, csv, json, table};
