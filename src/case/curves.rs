@@ -87,18 +87,19 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
     })
 }
 
-/// Draws quantities of both sides' lowest contacts (heading, axis with unit, column, factor) over an abscissa with its name.
+/// Draws quantities of both sides' lowest contacts (heading, axis with unit, column, factor) over an abscissa with its name. `beside` are
+/// columns that a sweep has not.
 ///
 /// # Errors
 /// Values of the abscissa that do not ascend.
 pub(super) fn over(
-    columns: &Columns,
+    (columns, beside): (&Columns, &[(&str, &[f64])]),
     (name, abscissa): (&str, &[f64]),
     quantities: &[(&str, &str, &str, f64)],
     (title, about): (&str, &str),
 ) -> Result<CurvesPicture> {
     ascending(abscissa)?;
-    let lowest = Lowest::new(columns, abscissa.len());
+    let lowest = Lowest { beside, ..Lowest::new(columns, abscissa.len()) };
     let sides = [("left", false), ("right", true)];
     let jumps = sides.map(|(_, right)| {
         let places = ["rail_x_mm", "wheel_x_mm", "y_mm"].map(|name| lowest.values(right, name));
@@ -160,6 +161,8 @@ fn tread_range(curves: &[PlottedCurve], tread: &[bool]) -> Option<[f64; 2]> {
 /// The rows of the lowest contacts, by position and side.
 struct Lowest<'a> {
     columns: &'a Columns,
+    /// Columns beside those of a sweep, with their names.
+    beside: &'a [(&'a str, &'a [f64])],
     /// Rows of the left and the right side of every position.
     rows: Vec<[Option<usize>; 2]>,
 }
@@ -172,7 +175,7 @@ impl<'a> Lowest<'a> {
                 sides[usize::from(columns.right[row])] = Some(row);
             }
         }
-        Self { columns, rows }
+        Self { columns, beside: &[], rows }
     }
 
     /// Tells for every position whether both sides touch on treads; `None` if too few do.
@@ -186,7 +189,8 @@ impl<'a> Lowest<'a> {
 
     /// Gives a quantity at every position; NaN where a side has no contact.
     fn values(&self, right: bool, name: &str) -> Vec<f64> {
-        let column = self.columns.quantity(name).unwrap_or_default();
+        let beside = || self.beside.iter().find(|column| column.0 == name).map(|column| column.1);
+        let column = self.columns.quantity(name).or_else(beside).unwrap_or_default();
         let value = |row: Option<usize>| row.and_then(|row| column.get(row)).copied().unwrap_or(f64::NAN);
         self.rows.iter().map(|sides| value(sides[usize::from(right)])).collect()
     }

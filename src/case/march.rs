@@ -1,10 +1,13 @@
-//! The tables of a march.
+//! A march with what its places of contact carry.
 
-use std::fmt::Write;
+use rayon::prelude::*;
 
-use super::columns::Columns;
-use super::doubts::DoubtSet;
-use crate::search::{Contact, Event, Stop};
+use super::input::{Case, Profiles};
+use super::places::rows_under_load;
+use super::run::end_reached;
+use super::wheel::Region;
+use crate::error::Result;
+use crate::search::{Event, March, Stop, SweepRow};
 
 /// What a march goes along: the column of its places, and the axis of its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,88 +27,109 @@ pub const ALONG: MarchCourse = MarchCourse { column: "along_mm", axis: "along th
 pub const AROUND: MarchCourse =
     MarchCourse { column: "angle_rad", axis: "pitch of the wheelset [rad]", decimals: 5 };
 
-/// First line of the table of stops: the columns of a sweep between the place and the pitch of the common tangent plane.
-pub fn march_head(course: MarchCourse) -> String {
-    format!("{},{},contact_pitch_rad\n", course.column, Columns::csv_head().trim_end())
+/// Stops under a load that are found at a time: each takes seconds, and threads share them.
+const PORTION: usize = 8;
+
+/// A march, what it is drawn from, and the loads on it.
+///
+/// The room `scene` makes one, by its `march`.
+#[derive(Debug, Clone)]
+pub struct MarchCase {
+    /// Ready to be computed.
+    pub march: March,
+    /// The profiles of both sides: of a body that varies a section of it, or the profile before it was made to vary.
+    pub profiles: Profiles,
+    /// The wheelset on the track under the loads of the scene, wherever it stands; `None` without loads.
+    pub loaded: Option<Case>,
+    /// What the lists leave undefined, and what is doubtful.
+    pub warnings: Vec<String>,
 }
 
-/// The rows of a march's table.
-#[derive(Debug, Clone, Default)]
-pub struct MarchColumns {
-    /// Where each row stands on the course \[mm\], or \[rad\].
-    pub along: Vec<f64>,
-    /// The columns of a sweep, stops being its positions.
-    pub columns: Columns,
-    /// Pitch of the common tangent plane \[rad\].
-    pub pitch: Vec<f64>,
+/// A place of contact, with what its region carries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MarchRow {
+    /// The place at first touch.
+    pub row: SweepRow,
+    /// Approach δ along its normal \[mm\]; NaN without a load, and where the place is within the region of another one or not closed.
+    pub approach: f64,
+    /// Normal force of its region \[N\]; NaN likewise.
+    pub normal_load: f64,
+    /// Whether the end of the slices cuts its patch off, so that the approach is too large.
+    pub cut_off: bool,
 }
 
-impl MarchColumns {
-    /// Appends the rows of a stop with this number.
-    pub fn push(&mut self, number: usize, stop: &Stop) {
-        for row in &stop.rows {
-            self.along.push(stop.along);
-            self.columns.push(number, row, None, DoubtSet::default());
-            // 0 without a sign.
-            self.pitch.push(0.0 - row.contact.turn);
-        }
+/// The places of contact of a wheelset with the middle of its axle at one place, or at one pitch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarchStop {
+    /// The place along the track \[mm\], or the pitch \[rad\].
+    pub along: f64,
+    /// Contacts of both sides, the left one first; none where a wheel has no rail.
+    pub rows: Vec<MarchRow>,
+}
+
+impl MarchRow {
+    fn touching(row: SweepRow) -> Self {
+        Self { row, approach: f64::NAN, normal_load: f64::NAN, cut_off: false }
     }
 
-    /// Removes all rows; the room for them stays.
-    pub fn clear(&mut self) {
-        self.along.clear();
-        self.columns.clear();
-        self.pitch.clear();
-    }
-
-    /// Appends all rows as CSV, in the shortest digits that read back as the same numbers.
-    pub fn append_csv(&self, out: &mut String) {
-        let mut text = String::new();
-        self.columns.append_csv(&mut text);
-        for (row, line) in text.lines().enumerate() {
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "{},{line},{}", self.along[row], self.pitch[row]);
-        }
+    /// Takes a place with the region that has its frame.
+    fn carrying(row: SweepRow, region: Option<&Region>) -> Self {
+        region.map_or(Self::touching(row), |region| Self {
+            row,
+            approach: region.approach,
+            normal_load: region.loads.iter().sum(),
+            cut_off: end_reached(&region.placement, &region.patch).is_some(),
+        })
     }
 }
 
-/// Names of an event's numbers, in the order of [`event_numbers`].
-pub const EVENT_NUMBERS: [&str; 11] = [
-    "rail_x_before_mm",
-    "rail_x_after_mm",
-    "wheel_x_before_mm",
-    "wheel_x_after_mm",
-    "y_before_mm",
-    "y_after_mm",
-    "radius_jump_mm",
-    "slope_before",
-    "slope_after",
-    "impact_angle_rad",
-    "gap_mm",
-];
-
-/// Gives the numbers of an event; NaN where there is no contact, or no second place.
-pub fn event_numbers(event: &Event) -> [f64; EVENT_NUMBERS.len()] {
-    let both = |of: fn(&Contact) -> f64| {
-        [event.before, event.after].map(|contact| contact.as_ref().map_or(f64::NAN, of))
-    };
-    let [rail, wheel, y] = [both(|c| c.rail_x), both(|c| c.wheel_x), both(|c| c.y)];
-    let slope = event.slopes;
-    let (jump, impact, gap) = (event.radius_jump(), event.impact_angle(), event.gap.unwrap_or(f64::NAN));
-    [rail[0], rail[1], wheel[0], wheel[1], y[0], y[1], jump, slope[0], slope[1], impact, gap]
-}
-
-/// First line of the table of events.
-pub fn events_head(course: MarchCourse) -> String {
-    format!("{},side,event,{}\n", course.column, EVENT_NUMBERS.join(","))
-}
-
-/// Appends the row of an event to the text of the table; cells without a number are empty.
-pub fn append_event(out: &mut String, event: &Event) {
-    // Writing to a String cannot fail.
-    let _ = write!(out, "{},{},{}", event.along, event.side, event.kind.name());
-    for number in event_numbers(event) {
-        let _ = if number.is_nan() { write!(out, ",") } else { write!(out, ",{number}") };
+impl MarchCase {
+    /// Hands the stops at ascending places of a course to `sink` in order, and the events since the ones before after them; as long as it
+    /// wants more. Under loads the places and the roll are those that the loads settle at; events are those of first touch.
+    ///
+    /// It runs on the threads of the current rayon pool; any number of threads gives the same bits. Cost: that of [`March::blocks`];
+    /// under loads 0.5 to 2 s more for a stop.
+    ///
+    /// # Errors
+    /// The errors of [`March::blocks`] and [`March::turns`]; a load that no approach carries, with the place.
+    pub fn blocks(
+        &self,
+        course: MarchCourse,
+        places: &[f64],
+        mut sink: impl FnMut(&[MarchStop], &[Event]) -> Result<bool>,
+    ) -> Result<()> {
+        let portion = if self.loaded.is_some() { PORTION } else { usize::MAX };
+        let sink = |stops: &[Stop], events: &[Event]| {
+            for some in stops.chunks(portion) {
+                let found: Vec<Result<MarchStop>> =
+                    some.par_iter().map(|stop| self.stop(course, stop)).collect();
+                if !sink(&found.into_iter().collect::<Result<Vec<_>>>()?, &[])? {
+                    return Ok(false);
+                }
+            }
+            sink(&[], events)
+        };
+        if course == AROUND { self.march.turns(places, sink) } else { self.march.blocks(places, sink) }
     }
-    out.push('\n');
+
+    /// Finds what the places of a stop carry.
+    fn stop(&self, course: MarchCourse, stop: &Stop) -> Result<MarchStop> {
+        let along = stop.along;
+        let rows = match &self.loaded {
+            Some(case) if !stop.rows.is_empty() => {
+                let mut here = case.clone();
+                let place = if course == AROUND {
+                    here.standing.pitch = along;
+                    format!("angle {along} rad")
+                } else {
+                    here.standing.along = along;
+                    format!("along {along} mm")
+                };
+                let rows = rows_under_load(&here).map_err(|error| error.within(place))?;
+                rows.into_iter().map(|(row, region)| MarchRow::carrying(row, region.as_ref())).collect()
+            }
+            _ => stop.rows.iter().copied().map(MarchRow::touching).collect(),
+        };
+        Ok(MarchStop { along, rows })
+    }
 }

@@ -1,12 +1,12 @@
 //! The picture and the page of a march.
 
 use super::curves::over;
-use super::input::Profiles;
-use super::march::{AROUND, MarchColumns, MarchCourse, event_numbers};
+use super::march::{AROUND, MarchCase, MarchCourse};
+use super::march_table::{MARCH_NUMBERS, MarchColumns, event_numbers};
 use super::sweep_view::{Shown, page_of};
 use crate::error::Result;
 use crate::export::{CurvesPicture, PageEvent, PageEvents, SweepPage};
-use crate::search::{Event, March};
+use crate::search::Event;
 
 /// Quantities of each side's lowest contact that the picture shows: heading, axis with unit, column, factor.
 const SHOWN: [(&str, &str, &str, f64); 6] = [
@@ -16,6 +16,12 @@ const SHOWN: [(&str, &str, &str, f64); 6] = [
     ("Contact on the wheel", "x on the wheel [mm]", "wheel_x_mm", 1.0),
     ("Contact ahead of the axle", "y [mm]", "y_mm", 1.0),
     ("Contact angle", "θ [°]", "contact_angle_rad", 180.0 / std::f64::consts::PI),
+];
+
+/// The same of what it carries.
+const CARRIED: [(&str, &str, &str, f64); 2] = [
+    ("Approach of the lowest contact", "δ [mm]", MARCH_NUMBERS[1], 1.0),
+    ("Normal force of the lowest contact", "F [kN]", MARCH_NUMBERS[2], 1e-3),
 ];
 
 /// Most events that a page lists: more than anybody goes through.
@@ -76,10 +82,8 @@ fn page_event(event: &Event, course: MarchCourse) -> PageEvent {
 
 /// A march at the stops that are drawn.
 pub struct DrawnMarch<'a> {
-    /// The march.
-    pub march: &'a March,
-    /// The profiles of both sides; those that vary are cut anew at every stop.
-    pub profiles: &'a Profiles,
+    /// The march; bodies that vary are cut anew at every stop.
+    pub case: &'a MarchCase,
     /// What it goes along.
     pub course: MarchCourse,
     /// Its contacts at the stops.
@@ -97,7 +101,11 @@ impl DrawnMarch<'_> {
     /// Places that do not ascend.
     pub fn picture(&self) -> Result<CurvesPicture> {
         let [title, about] = self.headings;
-        over(&self.columns.columns, (self.course.axis, self.places), &SHOWN, (title, about))
+        let carried = self.columns.carried();
+        let beside: Vec<(&str, &[f64])> =
+            MARCH_NUMBERS[1..].iter().copied().zip(carried.into_iter().flatten()).collect();
+        let shown = [SHOWN.as_slice(), if carried.is_some() { &CARRIED } else { &[] }].concat();
+        over((&self.columns.columns, &beside), (self.course.axis, self.places), &shown, (title, about))
     }
 
     /// Makes the page: the same curves over a slider along the course, with the sections of rails and wheels at every stop.
@@ -105,14 +113,15 @@ impl DrawnMarch<'_> {
     /// # Errors
     /// Places that do not ascend.
     pub fn page(&self, events: &ListedEvents) -> Result<SweepPage> {
-        let pitch = self.march.pitch;
+        let pitch = self.case.march.pitch;
         let stands = |at: f64| if self.course == AROUND { [0.0, at] } else { [at, pitch] };
         let shown = Shown {
-            profiles: self.profiles,
-            system: &self.march.system,
+            profiles: &self.case.profiles,
+            system: &self.case.march.system,
             columns: &self.columns.columns,
             positions: self.places,
             stands: &stands,
+            loads: self.columns.carried().map(|[_, loads]| loads),
             table: "march",
         };
         Ok(SweepPage { events: events.on_page(self.course), ..page_of(&shown, self.picture()?) })

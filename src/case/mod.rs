@@ -24,6 +24,7 @@ mod jobs;
 mod joined;
 mod landmarks;
 mod march;
+mod march_table;
 mod march_view;
 mod measure_view;
 mod on_rail;
@@ -70,9 +71,9 @@ pub use input::{
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};
-pub use march::{
-    ALONG, AROUND, EVENT_NUMBERS, MarchColumns, MarchCourse, append_event, event_numbers, events_head,
-    march_head,
+pub use march::{ALONG, AROUND, MarchCase, MarchCourse, MarchRow, MarchStop};
+pub use march_table::{
+    EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, append_event, event_numbers, events_head, march_head,
 };
 pub use march_view::{DrawnMarch, ListedEvents};
 pub use measure_view::measures_page;

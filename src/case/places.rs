@@ -12,7 +12,7 @@ use super::wheel::{OnLoft, Region, Wheel, carry, placed_at};
 use crate::error::{Error, ErrorKind, Result};
 use crate::placement::Placement;
 use crate::search;
-use crate::search::{ONE_CONTACT, Position, Roll, Selection, TrackSide};
+use crate::search::{NoConicity, ONE_CONTACT, Position, Roll, Selection, SweepRow, TrackSide};
 
 /// Vertical gaps \[mm\] up to which places of contact are looked for at least, one after the other until a load is carried:
 /// what most loads close, and what none does that steel bears.
@@ -95,6 +95,48 @@ pub fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedConta
 
 /// Lets a search find the contacts of a wheel or a wheelset.
 fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
+    let (sides, regions, load_s) = closed(case, approach)?;
+    let contacts = sides.iter().zip(regions).map(|(side, regions)| side.contacts(case, regions, load_s));
+    contacts.collect::<Result<Vec<_>>>().map(|all| all.into_iter().flatten().collect())
+}
+
+/// Finds the places of a wheelset's contact under the loads of a case, the left side's first, with what their regions carry: those within
+/// the reach of near misses, and those that carry.
+///
+/// # Errors
+/// No contact; a load that no approach carries; no roll that the loads settle at.
+pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<Region>)>> {
+    let Place::Wheelset { position, .. } = &case.standing.place else { return Ok(Vec::new()) };
+    let (sides, regions, _) = closed(case, case.question.approach)?;
+    let radius =
+        |k: usize| sides.get(k).and_then(|side| side.places.first()).map_or(f64::NAN, |at| at.rolling_radius);
+    let delta_r = radius(0) - radius(1);
+    let mut rows = Vec::new();
+    for (side, mut regions) in sides.iter().zip(regions).rev() {
+        let held: Vec<usize> = regions.iter().map(|region| region.place).collect();
+        let reached =
+            |(k, place): &(usize, &search::Contact)| place.gap <= case.standing.within || held.contains(k);
+        for (number, (k, place)) in side.places.iter().enumerate().filter(reached).enumerate() {
+            let row = SweepRow {
+                lateral: position.lateral,
+                yaw: position.yaw,
+                roll: side.roll,
+                side: side.side.unwrap_or(TrackSide::Right),
+                number,
+                z: side.height,
+                contact: *place,
+                delta_r,
+                conicity: Err(NoConicity::NotAsked),
+            };
+            let own = regions.iter().position(|region| region.place == k);
+            rows.push((row, own.map(|at| regions.swap_remove(at))));
+        }
+    }
+    Ok(rows)
+}
+
+/// Lowers the wheels of a case and lets them sink: the sides, the regions of each, and the seconds that a load took.
+fn closed(case: &Case, approach: Option<ApproachBy>) -> Result<(Vec<Side>, Vec<Vec<Region>>, f64)> {
     let nearest = case.standing.within.max(match approach {
         Some(ApproachBy::Given(approach)) => STEEPEST * approach,
         _ => 0.0,
@@ -109,9 +151,7 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact
                     None | Some(ApproachBy::Given(_)) => 0.0,
                     Some(_) => start.elapsed().as_secs_f64(),
                 };
-                let contacts =
-                    sides.iter().zip(regions).map(|(side, regions)| side.contacts(case, regions, load_s));
-                return contacts.collect::<Result<Vec<_>>>().map(|all| all.into_iter().flatten().collect());
+                return Ok((sides, regions, load_s));
             }
             Err(side) => heavy = side,
         }

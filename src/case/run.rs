@@ -14,7 +14,7 @@ use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::Result;
 use crate::patch::Patch;
-use crate::placement::Creepages;
+use crate::placement::{Creepages, Placement};
 use crate::search::TrackSide;
 use crate::separation::Plan;
 
@@ -184,16 +184,21 @@ impl Part {
 /// tangent plane, which pitches by a tenth at most.
 const AT_SLICE: f64 = 0.1;
 
-/// Says that a patch reaches the first or the last slice of a rail that varies along the track, beyond which there is no surface.
-fn slices_warning(site: &Site, patch: &Patch) -> Option<String> {
-    let lofted = site.contact.placement.lofted_rail()?;
+/// Gives the end of the slices \[mm\] that a patch on a rail that varies along the track reaches: there is no surface beyond.
+pub(super) fn end_reached(placement: &Placement, patch: &Patch) -> Option<f64> {
+    let lofted = placement.lofted_rail()?;
     let [from, to] = lofted.loft().reach();
     let along = patch.extent()?.eta.map(|eta| lofted.along_at(0.0, eta));
-    let end = match along {
-        [behind, _] if behind <= from + AT_SLICE => from,
-        [_, ahead] if ahead >= to - AT_SLICE => to,
-        _ => return None,
-    };
+    match along {
+        [behind, _] if behind <= from + AT_SLICE => Some(from),
+        [_, ahead] if ahead >= to - AT_SLICE => Some(to),
+        _ => None,
+    }
+}
+
+/// Says that a patch reaches the first or the last slice.
+fn slices_warning(site: &Site, patch: &Patch) -> Option<String> {
+    let end = end_reached(&site.contact.placement, patch)?;
     Some(format!(
         "the patch reaches the end of the slices at {end} mm: it is cut off there, and pressures are too large; list more slices"
     ))

@@ -27,6 +27,8 @@ pub(super) struct Shown<'a> {
     pub positions: &'a [f64],
     /// Where the wheelset stands at a position, of bodies that vary: along the track \[mm\], and its pitch \[rad\].
     pub stands: &'a dyn Fn(f64) -> [f64; 2],
+    /// Normal force of the region of each contact \[N\]; `None` where none is known.
+    pub loads: Option<&'a [f64]>,
     /// What holds the exact numbers: "sweep".
     pub table: &'a str,
 }
@@ -55,7 +57,15 @@ pub(super) fn swept<'a>(
     columns: &'a Columns,
     positions: &'a [f64],
 ) -> Shown<'a> {
-    Shown { profiles: &case.profiles, system, columns, positions, stands: &|_| [0.0; 2], table: "sweep" }
+    Shown {
+        profiles: &case.profiles,
+        system,
+        columns,
+        positions,
+        stands: &|_| [0.0; 2],
+        loads: None,
+        table: "sweep",
+    }
 }
 
 /// Makes the page of the panels of a picture.
@@ -109,6 +119,7 @@ impl Shown<'_> {
             wheel_x: Vec::new(),
             angle: Vec::new(),
             gap: Vec::new(),
+            load: Vec::new(),
         };
         for row in (0..self.columns.rows()).filter(|&row| self.columns.right[row] == right) {
             let value = |name: &str| self.columns.quantity(name).map_or(f64::NAN, |column| column[row]);
@@ -118,6 +129,7 @@ impl Shown<'_> {
             out.wheel_x.push(value("wheel_x_mm"));
             out.angle.push(value("contact_angle_rad"));
             out.gap.push(value("gap_mm"));
+            out.load.extend(self.loads.and_then(|loads| loads.get(row)));
             if self.columns.contact[row] == 1 && number < self.positions.len() {
                 self.place(&mut out, number, &value);
             }

@@ -100,6 +100,14 @@ impl Scene {
         }
     }
 
+    /// Tells whether a load is given, of the axle, of each wheel or of a side.
+    pub fn loaded(&self) -> bool {
+        let sides = [&self.left, &self.right].into_iter().flatten();
+        self.wheelset.as_ref().is_some_and(|wheelset| wheelset.load.is_some())
+            || self.patch.as_ref().is_some_and(|patch| patch.load.is_some())
+            || sides.into_iter().any(|side| side.load.is_some())
+    }
+
     /// Lists the profiles that it describes, those of both sides and those of one.
     pub fn profiles(&self) -> impl Iterator<Item = &ProfileData> {
         let sides = [&self.left, &self.right].into_iter().flatten();

@@ -12,8 +12,9 @@ use super::profiles::{
     Given, Resolved, Sources, is_chain_file, profile_from_file, rail_of, reject_measured_keys,
     turned_and_shifted, wheel_of, wheel_radius,
 };
+use super::resolve::with_profiles;
 use super::standing::{position, rails, wheels, within};
-use crate::case::{Profiles, SideProfiles, usual};
+use crate::case::{Case, MarchCase, Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};
 use crate::files::read_bytes;
 use crate::lofted::{Flat, Loft, LoftedBody, LoftedWheel, Slice, section};
@@ -23,23 +24,12 @@ use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::{Profile, Side, trace};
 use crate::search::{March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
 
-/// The march of a scene.
-#[derive(Debug, Clone)]
-pub struct SceneMarch {
-    /// Ready to be computed.
-    pub march: March,
-    /// The profiles of both sides: of a body that varies a section of it, or the profile before it was made to vary.
-    pub profiles: Profiles,
-    /// What the lists leave undefined, and what is doubtful.
-    pub warnings: Vec<String>,
-}
-
 /// Resolves a scene into a march along its rails, at least one of which is a list of slices without `along`, or around its wheels, at
 /// least one of which has a flat, is out of round or is a list of slices without `angle`. Paths in the scene are relative to `folder`.
 ///
 /// # Errors
 /// Anything that is wrong; the error names the key.
-pub fn march(scene: &Scene, folder: &Path) -> Result<SceneMarch> {
+pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
     let (Some(track), Some(wheelset)) = (&scene.track, &scene.wheelset) else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a march moves a wheelset along its track"));
@@ -75,7 +65,21 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<SceneMarch> {
     }
     let selection = Selection { within, apart: ONE_CONTACT };
     let march = March { system, position, selection, reach: lists.reach, pitch };
-    Ok(SceneMarch { march, profiles, warnings: lists.warnings })
+    let loaded = loaded(scene, &profiles)?;
+    Ok(MarchCase { march, profiles, loaded, warnings: lists.warnings })
+}
+
+/// Makes the case of a wheelset under the loads of a scene; `None` without loads.
+fn loaded(scene: &Scene, profiles: &Profiles) -> Result<Option<Case>> {
+    if !scene.loaded() {
+        return Ok(None);
+    }
+    // Where it stands is said at every place; a march has no motion.
+    let mut here = Scene { motion: None, ..scene.clone() };
+    if let Some(wheelset) = &mut here.wheelset {
+        wheelset.along = profiles.varying().any(|side| side == Side::Rail).then_some(0.0);
+    }
+    with_profiles(&here, profiles.clone(), "march").map(Some)
 }
 
 /// What both sides are made of.

@@ -23,7 +23,7 @@ pub use data::{
     TrackData, WheelsetData, schema,
 };
 pub use doubts::doubts_of_keys;
-pub use march::{SceneMarch, loft, march};
+pub use march::{loft, march};
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 pub use profile_data::{FlatData, ProfileData, Rotation};
 pub use profiles::{

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::Value;
-use wheelrail::case::{Run, SILENT};
+use wheelrail::case::{ALONG, MarchCase, MarchCourse, Part, Run, SILENT};
 use wheelrail::error::Result;
 use wheelrail::lofted::{Joining, Loft, LoftedBody};
 use wheelrail::mesh::{StripCounts, StripMesh};
@@ -309,6 +309,43 @@ fn wing_and_nose_share_a_load() -> Result<()> {
     let areas: Vec<f64> = right.map(|part| part.analysis.patch.as_ref().unwrap().area()).collect();
     assert!(!areas.is_empty() && areas.iter().all(|area| *area > 1.0 && *area < 1000.0), "{areas:?}");
     Ok(())
+}
+
+/// Holds what the right-hand wheel carries at the stops of a march against runs there: approach and normal force of each region.
+pub(super) fn marches_as_it_runs(case: &MarchCase, course: MarchCourse, runs: &[(f64, Run)]) -> Result<()> {
+    let places: Vec<f64> = runs.iter().map(|(at, _)| *at).collect();
+    let mut stops = Vec::new();
+    case.blocks(course, &places, |found, _| {
+        stops.extend_from_slice(found);
+        Ok(true)
+    })?;
+    assert_eq!(stops.len(), runs.len());
+    for (stop, (at, run)) in stops.iter().zip(runs) {
+        let right =
+            stop.rows.iter().filter(|row| row.row.side == TrackSide::Right && row.approach.is_finite());
+        let found: Vec<[f64; 2]> = right.map(|row| [row.approach, row.normal_load]).collect();
+        let parts = run.parts.iter().filter(|part| part.site.side() == Some(TrackSide::Right));
+        let of = |part: &Part| {
+            let contact = &part.site.contact;
+            [contact.approach.unwrap(), contact.normal_loads.iter().sum()]
+        };
+        let expected: Vec<[f64; 2]> = parts.map(of).collect();
+        assert_eq!(found.len(), expected.len(), "{at}: {found:?} {expected:?}");
+        for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((a / b - 1.0).abs() < 1e-9, "{at}: {found:?} {expected:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_march_under_a_load_carries_what_runs_do() -> Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let case = scene::march(&scene::parse(&format!("{text}\n[patch]\nload = 1.0e5"), false)?, &folder)?;
+    // At the second place wing and nose share the load.
+    let at = |along: f64| Ok((along, run(along, "[patch]\nload = 1.0e5")?));
+    marches_as_it_runs(&case, ALONG, &[at(0.0)?, at(122.5)?, at(160.0)?])
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use wheelrail::case::{Run, SILENT};
+use wheelrail::case::{AROUND, Run, SILENT};
 use wheelrail::error::Result;
 use wheelrail::load::curvatures;
 use wheelrail::lofted::{Flat, LoftedBody, LoftedWheel};
@@ -16,7 +16,7 @@ use wheelrail_report::random::Random;
 
 use super::around_the_wheel::{RADIUS, cases, crown, of_right, position, turning};
 use super::campaign::scenes;
-use super::over_slices::floods;
+use super::over_slices::{floods, marches_as_it_runs};
 
 /// Slope of the cone's tread.
 const SLOPE: f64 = 0.05;
@@ -203,6 +203,15 @@ fn a_wheel_on_its_flat_is_run_like_any_other() -> Result<()> {
         edge.parts.iter().map(|part| part.analysis.patch.as_ref().unwrap().area()).collect();
     assert!((areas[0] / areas[1] - 1.0).abs() < 1e-9, "{areas:?}");
     Ok(())
+}
+
+#[test]
+fn a_wheel_that_turns_under_a_load_carries_what_runs_do() -> Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/wheel_flat");
+    let text = std::fs::read_to_string(folder.join("wheel_flat.toml")).unwrap();
+    let case = scene::march(&scene::parse(&format!("{text}\n[patch]\nload = 6.0e4"), false)?, &folder)?;
+    let at = |pitch: f64| Ok((pitch, run(pitch, "[patch]\nload = 6.0e4")?));
+    marches_as_it_runs(&case, AROUND, &[at(-0.03)?, at(0.0)?, at(1.0)?])
 }
 
 #[test]

@@ -8,13 +8,13 @@ use super::progress::Progress;
 use super::range::{range, range_in};
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
-    ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, append_event,
+    ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, MarchStop, append_event,
     events_head, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
-use wheelrail::scene::{self, Scene, SceneMarch};
-use wheelrail::search::{Event, Stop};
+use wheelrail::scene::{self, Scene};
+use wheelrail::search::Event;
 
 /// The scene, the places, and the outputs.
 #[derive(Debug, clap::Args)]
@@ -131,6 +131,8 @@ struct Marched {
     done: usize,
     /// Stops without contact.
     without: usize,
+    /// Stops with a patch that the end of the slices cuts off.
+    cut_off: usize,
     /// The rows of some stops.
     rows: MarchColumns,
     /// The rows of the stops that are drawn, which are numbered among themselves.
@@ -147,16 +149,17 @@ impl Marched {
         }
         let (rows, drawn, events) = Default::default();
         let stride = all.div_ceil(MOST_DRAWN).max(1);
-        Ok(Self { outputs, all, stride, done: 0, without: 0, rows, drawn, events })
+        Ok(Self { outputs, all, stride, done: 0, without: 0, cut_off: 0, rows, drawn, events })
     }
 
     /// Takes the next stops, and the events up to them. Returns whether more are wanted.
-    fn take(&mut self, stops: &[Stop], events: &[Event], progress: &Progress) -> Result<bool> {
+    fn take(&mut self, stops: &[MarchStop], events: &[Event], progress: &Progress) -> Result<bool> {
         let (mut table, mut told) = (String::new(), String::new());
         self.rows.clear();
         for stop in stops {
             self.rows.push(self.done, stop);
             self.without += usize::from(stop.rows.is_empty());
+            self.cut_off += usize::from(stop.rows.iter().any(|row| row.cut_off));
             if self.outputs.draws() && self.done.is_multiple_of(self.stride) {
                 self.drawn.push(self.done / self.stride, stop);
             }
@@ -183,41 +186,41 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     let scene = scene::load(path)?;
     let (course, places) = arguments.places.read()?;
     let outputs = MarchOutputs::create(arguments, &scene)?;
-    let SceneMarch { march, profiles, warnings } =
-        scene::march(&scene, folder_of(path)).map_err(|error| error.within(path.display()))?;
-    for warning in warnings.into_iter().chain(unused(&scene)) {
+    let case = scene::march(&scene, folder_of(path)).map_err(|error| error.within(path.display()))?;
+    for warning in case.warnings.iter().cloned().chain(unused(&scene)) {
         complain(&format!("warning: {warning}"));
     }
     let mut marched = Marched::new(outputs, course, places.len())?;
     progress.at(format!("0 of {} places", places.len()));
-    let sink = |stops: &[Stop], events: &[Event]| marched.take(stops, events, &progress);
-    if course == AROUND { march.turns(&places, sink) } else { march.blocks(&places, sink) }?;
-    let Marched { mut outputs, stride, without, drawn, events, .. } = marched;
+    case.blocks(course, &places, |stops, events| marched.take(stops, events, &progress))?;
+    let Marched { mut outputs, stride, without, cut_off, drawn, events, .. } = marched;
     let shown: Vec<f64> = places.iter().copied().step_by(stride).collect();
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let number = counted(places.len(), "place");
     let about = format!("{number}; lowest contact of each side, in its own profile axes");
     let headings = [scene.title.as_deref().unwrap_or(&name), &about];
-    let drawn =
-        DrawnMarch { march: &march, profiles: &profiles, course, columns: &drawn, places: &shown, headings };
+    let drawn = DrawnMarch { case: &case, course, columns: &drawn, places: &shown, headings };
     outputs.draw(&drawn, &events, &progress)?;
     outputs.commit()?;
     drop(progress);
     if without > 0 {
         complain(&format!("march: no contact at {}", counted(without, "place")));
     }
+    if cut_off > 0 {
+        let places = counted(cut_off, "place");
+        complain(&format!(
+            "march: the end of the slices cuts off a patch at {places}: approaches there are too large; list more slices"
+        ));
+    }
     Ok(Outcome::Done)
 }
 
 /// Names what the scene asks for and a march does not give.
 fn unused(scene: &Scene) -> Option<String> {
-    let sides = [&scene.left, &scene.right].into_iter().flatten();
-    let loaded = scene.wheelset.as_ref().is_some_and(|wheelset| wheelset.load.is_some());
     let asked = [
-        ("[patch]", scene.patch.is_some()),
-        ("loads", loaded || sides.into_iter().any(|side| side.load.is_some())),
+        ("[patch] approach", scene.patch.as_ref().is_some_and(|patch| patch.approach.is_some())),
         ("[motion]", scene.motion.is_some()),
     ];
     let names: Vec<&str> = asked.into_iter().filter_map(|(name, given)| given.then_some(name)).collect();
-    (!names.is_empty()).then(|| format!("a march gives first touch: it does not use {}", names.join(", ")))
+    (!names.is_empty()).then(|| format!("a march does not use {}", names.join(", ")))
 }

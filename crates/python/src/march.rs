@@ -6,9 +6,9 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use wheelrail::Error;
-use wheelrail::case::{ALONG, AROUND, EVENT_NUMBERS, MarchColumns, event_numbers};
-use wheelrail::scene::{self, SceneMarch};
-use wheelrail::search::{Event, Stop};
+use wheelrail::case::{ALONG, AROUND, EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, MarchStop, event_numbers};
+use wheelrail::scene;
+use wheelrail::search::Event;
 
 use crate::arrays::values;
 use crate::errors::{exception, say};
@@ -20,8 +20,8 @@ use crate::sweep::arrays_of;
 ///
 /// `path` is a scene file whose rail is a list of slices, `.slcs`, without `along`, or whose wheel has `flat`, `radii`, or is a list
 /// `.slcw` without `angle`. Returns two dicts of arrays: the contacts, with the columns of a sweep, `along_mm` or `angle_rad`, and
-/// `contact_pitch_rad`; and the events, with those of `wheelrail march --events`. `progress` is called with the places done and all of
-/// them.
+/// `contact_pitch_rad`, `approach_mm` and `normal_load_n`, of which the last two are NaN without a load in the scene; and the events, with
+/// those of `wheelrail march --events`. `progress` is called with the places done and all of them.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp
@@ -72,27 +72,36 @@ pub(crate) fn march<'py>(
     let (rows, events, warnings) = watched(py, progress.as_ref(), |watch| {
         let scene = scene::load(&path)?;
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
-        let SceneMarch { march, warnings, .. } = scene::march(&scene, folder)?;
+        let case = scene::march(&scene, folder)?;
         let (mut rows, mut events, mut done) = (MarchColumns::default(), Vec::new(), 0);
-        let sink = |stops: &[Stop], found: &[Event]| {
+        let mut cut_off = 0;
+        case.blocks(course, &along, |stops: &[MarchStop], found: &[Event]| {
             for stop in stops {
                 rows.push(done, stop);
+                cut_off += usize::from(stop.rows.iter().any(|row| row.cut_off));
                 done += 1;
             }
             events.extend_from_slice(found);
             watch.at(done, along.len());
             watch.go_on().map(|()| true)
-        };
-        if course == AROUND { march.turns(&along, sink) } else { march.blocks(&along, sink) }?;
+        })?;
+        let mut warnings = case.warnings;
+        if cut_off > 0 {
+            warnings.push(format!(
+                "the end of the slices cuts off a patch at {cut_off} places: approaches there are too large"
+            ));
+        }
         Ok((rows, events, warnings))
     })?;
     for warning in &warnings {
         say(py, "march", warning, "see the scene and its lists of slices")?;
     }
-    let MarchColumns { along, columns, pitch } = rows;
+    let MarchColumns { along, columns, numbers } = rows;
     let rows = arrays_of(py, columns)?;
     rows.set_item(course.column, PyArray1::from_vec(py, along))?;
-    rows.set_item("contact_pitch_rad", PyArray1::from_vec(py, pitch))?;
+    for (name, numbers) in MARCH_NUMBERS.into_iter().zip(numbers) {
+        rows.set_item(name, PyArray1::from_vec(py, numbers))?;
+    }
     let told = PyDict::new(py);
     told.set_item(course.column, PyArray1::from_iter(py, events.iter().map(|event| event.along)))?;
     told.set_item("side", PyList::new(py, events.iter().map(|event| event.side.name()))?)?;

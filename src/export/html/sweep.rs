@@ -74,6 +74,9 @@ pub struct SweepSide {
     /// Vertical gap \[mm\] of every contact at first touch.
     #[serde(serialize_with = "floats")]
     pub gap: Vec<f64>,
+    /// Normal force of the region of every contact \[N\], NaN where it has none of its own; empty where none is known.
+    #[serde(serialize_with = "floats")]
+    pub load: Vec<f64>,
 }
 
 /// What happens between two positions.

@@ -38,7 +38,7 @@ fn a_march_has_a_row_for_each_place_and_its_events() {
     let table = String::from_utf8(output.stdout).unwrap();
     let head = table.lines().next().unwrap();
     assert!(head.starts_with("along_mm,lateral_mm,yaw_rad,roll_rad,side,contact,z_mm,rail_x_mm,"), "{head}");
-    assert!(head.ends_with(",doubt,contact_pitch_rad"), "{head}");
+    assert!(head.ends_with(",doubt,contact_pitch_rad,approach_mm,normal_load_n"), "{head}");
     let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|row| row.split(',').collect()).collect();
     assert!(rows.iter().all(|row| row.len() == head.split(',').count()), "{table}");
     let lowest = |side: &str| rows.iter().filter(|row| row[4] == side && row[5] == "1").count();

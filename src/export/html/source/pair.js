@@ -21,8 +21,8 @@ export class PairView {
         this.sign = side.right ? 1 : -1;
         this.places = floats(side.places);
         this.contacts = Array.from(state.positions, () => []);
-        const [rail, wheel, angle, gap] = [side.rail_x, side.wheel_x, side.angle, side.gap].map(floats);
-        side.position.forEach((number, k) => this.contacts[number]?.push({ rail: rail[k], wheel: wheel[k], angle: angle[k], gap: gap[k] }));
+        const [rail, wheel, angle, gap, load] = [side.rail_x, side.wheel_x, side.angle, side.gap, side.load].map(floats);
+        side.position.forEach((number, k) => this.contacts[number]?.push({ rail: rail[k], wheel: wheel[k], angle: angle[k], gap: gap[k], load: load[k] }));
         const x = this.pair.wheel.map((at) => at[0]);
         this.lift = LIFT * (Math.max(...x) - Math.min(...x));
         this.frame();
@@ -131,9 +131,10 @@ export class PairView {
     said() {
         const found = this.contacts[this.state.at];
         if (found.length === 0) return "no contact";
-        const words = ({ rail, wheel, angle, gap }) => {
+        const words = ({ rail, wheel, angle, gap, load }) => {
             const near = gap > 0 ? `, gap ${fixed(gap, 3)} mm` : "";
-            return `rail x ${fixed(rail, 2)}, wheel x ${fixed(wheel, 2)} mm, angle ${fixed((angle * 180) / Math.PI, 2)}°${near}`;
+            const carries = load >= 0 ? `, ${fixed(load / 1000, 2)} kN` : "";
+            return `rail x ${fixed(rail, 2)}, wheel x ${fixed(wheel, 2)} mm, angle ${fixed((angle * 180) / Math.PI, 2)}°${near}${carries}`;
         };
         return found.map(words).join("; ");
     }
