@@ -15,6 +15,7 @@ mod resolve;
 mod side_data;
 mod sides;
 mod standing;
+mod varying;
 pub(crate) mod words;
 
 pub use axes::check_axis;
@@ -23,7 +24,7 @@ pub use data::{
     TrackData, WheelsetData, schema,
 };
 pub use doubts::doubts_of_keys;
-pub use march::{loft, march};
+pub use march::march;
 pub use motion_data::{FrictionData, MotionData, PitchData, PitchWord};
 pub use profile_data::{FlatData, ProfileData, Rotation};
 pub use profiles::{
@@ -34,4 +35,5 @@ pub use read::{load, parse};
 pub use resolve::{approach, echo, modulus, pressure_cell, resolve, resolve_given, to_toml, with_profiles};
 pub use side_data::{DeviationData, SideData};
 pub use standing::{distance, within};
+pub use varying::loft;
 pub use words::perhaps;

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::data::Scene;
-use super::march::{Wheel, both_vary, list_of, loft, wheel};
 use super::profile_data::ProfileData;
 use super::profiles::{Resolved, Sources, pair_of, rail_of};
 use super::side_data::SideData;
+use super::varying::{Wheel, both_vary, list_of, loft, wheel};
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftedBody, section};
