@@ -67,7 +67,9 @@ impl Loft {
     /// that two successive slices have; a monotone surface that folds over between two slices; more points than memory should hold.
     pub fn new(slices: &[Slice], joining: Joining) -> Result<Self> {
         check(slices)?;
-        let divided = slices.par_iter().map(divide).collect::<Result<Vec<_>>>()?;
+        // The first error in order, whatever thread would come upon one first.
+        let divided: Vec<Result<_>> = slices.par_iter().map(divide).collect();
+        let divided = divided.into_iter().collect::<Result<Vec<_>>>()?;
         let (runs, mut warnings) = runs(slices, &divided);
         let (mut strips, mut total) = (Vec::new(), 0);
         for (part, run) in runs {

@@ -122,7 +122,10 @@ fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<Slice>, Ve
         let curve = Curve::read(data, &folder.join(&slice.file), side)?;
         Ok(Curve { profile: turned_and_shifted(data, curve.profile)?, ..curve })
     });
-    let curves = curves.collect::<Result<Vec<_>>>().map_err(|error| error.within(&place))?;
+    // The first error in order, whatever thread would come upon one first.
+    let curves: Vec<Result<Curve>> = curves.collect();
+    let curves: Result<Vec<Curve>> = curves.into_iter().collect();
+    let curves = curves.map_err(|error| error.within(&place))?;
     if let Some(k) = (1..curves.len()).find(|&k| curves[k].scale != curves[0].scale) {
         let names = [0, k].map(|k| list.slices[k].file.as_str());
         let found =
