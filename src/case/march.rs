@@ -67,6 +67,14 @@ pub struct MarchStop {
     pub rows: Vec<MarchRow>,
 }
 
+/// Says at how many places of a march the end of the slices cuts a patch off; `None` where at none.
+pub fn cut_off_warning(places: usize) -> Option<String> {
+    let some = if places == 1 { "1 place".to_owned() } else { format!("{places} places") };
+    (places > 0).then(|| {
+        format!("the end of the slices cuts off a patch at {some}: approaches there are too large; list more slices")
+    })
+}
+
 impl MarchRow {
     fn touching(row: SweepRow) -> Self {
         Self { row, approach: f64::NAN, normal_load: f64::NAN, cut_off: false }

@@ -336,7 +336,8 @@ impl FramedLoft {
         None
     }
 
-    /// Whether no other sheet than that of a strip is near ξ in the sections around a level: parts beside it join it at their ends.
+    /// Whether all runs near ξ in the sections around a level are of one strip's sheet. A part beside the strip joins it at its end: it is of
+    /// that sheet unless ξ lies within it.
     fn is_alone(&self, strip: usize, xi: f64, level: i64) -> bool {
         let part = |strip: usize| self.loft.strips[strip].part;
         (level - 1..=level + 1).all(|level| {

@@ -52,7 +52,7 @@ const MOST_SECANTS: usize = 8;
 ///
 /// Accuracy: where f bends by little over the bracket, far better than `enough`.
 /// Degenerate: `None` where the signs are equal or a value is NaN, where a step leaves the bracket, and after eight steps.
-pub fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enough: f64) -> Option<f64> {
+fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enough: f64) -> Option<f64> {
     let bounds = [last.min(at), last.max(at)];
     let (mut before, mut value) = (f(last), f(at));
     // Not those of NaN, either.
@@ -75,7 +75,7 @@ pub fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enoug
 }
 
 /// Finds the place between `below`, where `f` < 0, and `above`, where it is not or is NaN, at which that changes, within `enough`: by
-/// [`secant`] steps where `f` is smooth, by bisection where it is not. Of several such places it is any one.
+/// secant steps where `f` is smooth, by bisection where it is not. Of several such places it is any one.
 ///
 /// Degenerate: a place next to `below` where `f` is not negative there.
 pub fn change(mut f: impl FnMut(f64) -> f64, [below, above]: [f64; 2], enough: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Contacts with rails that vary along the track: separation, normals, patches and runs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::Value;
@@ -262,6 +262,13 @@ fn patches_over_random_rails_are_what_a_flood_fill_finds() -> Result<()> {
     Ok(())
 }
 
+/// The folder of an example and the text of its scene.
+pub(super) fn example(name: &str) -> (PathBuf, String) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
+    let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
+    (folder, text)
+}
+
 /// A run of the example at a place along the track.
 fn run(along: f64, more: &str) -> Result<Run> {
     run_text(&along.to_string(), more)
@@ -289,8 +296,7 @@ fn a_wheel_on_the_nose_of_a_crossing_is_run_like_any_other() -> Result<()> {
 
 #[test]
 fn a_single_wheel_stands_on_a_crossing_as_that_of_a_wheelset_does() -> Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
-    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let (folder, text) = example("crossing");
     let rail = text.split("[right.rail]").nth(1).unwrap().split("\n\n").next().unwrap();
     let text = format!(
         "[rail]{rail}\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = 0.0\nalong = 160.0\n[patch]\napproach = 0.05"
@@ -340,8 +346,7 @@ pub(super) fn marches_as_it_runs(case: &MarchCase, course: MarchCourse, runs: &[
 
 #[test]
 fn a_march_under_a_load_carries_what_runs_do() -> Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
-    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let (folder, text) = example("crossing");
     let case = scene::march(&scene::parse(&format!("{text}\n[patch]\nload = 1.0e5"), false)?, &folder)?;
     // At the second place wing and nose share the load.
     let at = |along: f64| Ok((along, run(along, "[patch]\nload = 1.0e5")?));
@@ -397,8 +402,7 @@ fn what_rails_that_vary_do_not_have_is_refused_by_name() {
 }
 
 fn run_text(along: &str, more: &str) -> Result<Run> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
-    let text = std::fs::read_to_string(folder.join("crossing.toml")).unwrap();
+    let (folder, text) = example("crossing");
     let text = text.replace("lateral = 0.0", &format!("lateral = 0.0\nalong = {along}"));
     Run::new(scene::resolve(&scene::parse(&format!("{text}\n{more}"), false)?, &folder, "")?, SILENT)
 }

@@ -16,7 +16,7 @@ use wheelrail_report::random::Random;
 
 use super::around_the_wheel::{RADIUS, cases, crown, of_right, position, turning};
 use super::campaign::scenes;
-use super::over_slices::{floods, marches_as_it_runs};
+use super::over_slices::{example, floods, marches_as_it_runs};
 
 /// Slope of the cone's tread.
 const SLOPE: f64 = 0.05;
@@ -166,8 +166,7 @@ fn patches_of_random_flats_are_what_a_flood_fill_finds() -> Result<()> {
 
 /// A run of the example at a pitch \[rad\].
 fn run(pitch: f64, more: &str) -> Result<Run> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/wheel_flat");
-    let text = std::fs::read_to_string(folder.join("wheel_flat.toml")).unwrap();
+    let (folder, text) = example("wheel_flat");
     let text = text
         .replace("lateral = 0.0", &format!("lateral = 0.0\npitch = {}", format!("{pitch:?}").to_lowercase()));
     Run::new(scene::resolve(&scene::parse(&format!("{text}\n{more}"), false)?, &folder, "")?, SILENT)
@@ -207,8 +206,7 @@ fn a_wheel_on_its_flat_is_run_like_any_other() -> Result<()> {
 
 #[test]
 fn a_wheel_that_turns_under_a_load_carries_what_runs_do() -> Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/wheel_flat");
-    let text = std::fs::read_to_string(folder.join("wheel_flat.toml")).unwrap();
+    let (folder, text) = example("wheel_flat");
     let case = scene::march(&scene::parse(&format!("{text}\n[patch]\nload = 6.0e4"), false)?, &folder)?;
     let at = |pitch: f64| Ok((pitch, run(pitch, "[patch]\nload = 6.0e4")?));
     marches_as_it_runs(&case, AROUND, &[at(-0.03)?, at(0.0)?, at(1.0)?])

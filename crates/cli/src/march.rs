@@ -9,7 +9,7 @@ use super::range::{range, range_in};
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
     ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, MarchStop, append_event,
-    events_head, march_head,
+    cut_off_warning, events_head, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
@@ -206,11 +206,8 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     if without > 0 {
         complain(&format!("march: no contact at {}", counted(without, "place")));
     }
-    if cut_off > 0 {
-        let places = counted(cut_off, "place");
-        complain(&format!(
-            "march: the end of the slices cuts off a patch at {places}: approaches there are too large; list more slices"
-        ));
+    if let Some(warning) = cut_off_warning(cut_off) {
+        complain(&format!("march: {warning}"));
     }
     Ok(Outcome::Done)
 }

@@ -6,7 +6,9 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use wheelrail::Error;
-use wheelrail::case::{ALONG, AROUND, EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, MarchStop, event_numbers};
+use wheelrail::case::{
+    ALONG, AROUND, EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, MarchStop, cut_off_warning, event_numbers,
+};
 use wheelrail::scene;
 use wheelrail::search::Event;
 
@@ -86,11 +88,7 @@ pub(crate) fn march<'py>(
             watch.go_on().map(|()| true)
         })?;
         let mut warnings = case.warnings;
-        if cut_off > 0 {
-            warnings.push(format!(
-                "the end of the slices cuts off a patch at {cut_off} places: approaches there are too large"
-            ));
-        }
+        warnings.extend(cut_off_warning(cut_off));
         Ok((rows, events, warnings))
     })?;
     for warning in &warnings {
