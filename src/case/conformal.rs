@@ -100,13 +100,9 @@ pub(super) fn turning_warning(
     } else {
         format!("along the rail's own {t:.4e} mm ({:+.1} %)", 100.0 * (s - t) / t)
     };
-    let advice = match placement.varying() {
-        Some(varying) => format!("the gap along that normal is not available with {varying}"),
-        None => "a conformal solver needs grid.reference = \"rail\"".into(),
-    };
     Some(format!(
         "the rail's normal turns by {:.1} degrees within the patch: at xi = {:.3} mm the gap along the fixed normal is {s:.4e} mm, \
-         {own}; {advice}",
+         {own}; a conformal solver needs grid.reference = \"rail\"",
         turn.to_degrees(),
         at.xi,
     ))

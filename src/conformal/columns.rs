@@ -35,6 +35,8 @@ const FIRST_COUNT: usize = 4;
 /// of s: at and below [`crate::separation::FULL_PRECISION`] all digits near C are kept. Returns the largest truncation error
 /// \[mm\] that was measured meanwhile.
 ///
+/// With a body that varies every point is found by itself, and nothing is truncated.
+///
 /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
 pub fn fill_normal_gap(
     gap: &NormalGap<'_>,
@@ -45,6 +47,15 @@ pub fn fill_normal_gap(
 ) -> f64 {
     let length = axis.eta().len();
     if length == 0 {
+        return 0.0;
+    }
+    if gap.placement.lofted().is_some() {
+        out.par_chunks_mut(length).zip(sigma).for_each(|(out, &sigma)| {
+            let mut line = gap.line(sigma);
+            for (t, &eta) in out.iter_mut().zip(axis.eta()) {
+                *t = line.as_mut().map_or(f64::NAN, |line| gap.gap_on(line, eta));
+            }
+        });
         return 0.0;
     }
     if let Some(under) = &gap.under {

@@ -3,19 +3,18 @@
 //! A line along ζ meets the surface at a foot, which Newton's method finds on one strip from a place near it. Such places come from
 //! sections at equal steps along the surface: runs of points over which it faces the other body.
 
+use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Unit, Vector3};
 
 use super::around::LoftedWheel;
 use super::build::Loft;
+use super::runs::{LEVEL, Run, runs};
 use super::space::{Laid, SpacePoint};
 use super::strip::Strip;
 use crate::error::Result;
 use crate::profile::{self, Profile, Section, Segment, Side};
-
-/// Distance along the surface of the sections from which feet are sought \[mm\].
-const LEVEL: f64 = 4.0;
 
 /// How far along the track from C a rail is looked at \[mm\]: farther than a wheel reaches.
 const FARTHEST: f64 = 4000.0;
@@ -25,9 +24,6 @@ const FARTHEST_AROUND: f64 = 1.3;
 
 /// Slope of the surface at C in the frame from which on it touches with an edge: rounding of the place is below, kinks of drawings above.
 const EDGE: f64 = 1e-6;
-
-/// How far beyond the end of a run feet are sought from it \[mm\]: a part may be that much wider half a step along the track.
-const BESIDE: f64 = 2.0;
 
 /// Most steps to a foot; three or four are usual.
 const STEPS: usize = 40;
@@ -69,17 +65,10 @@ pub struct FramedLoft {
     levels: Vec<OnceLock<Vec<Run>>>,
     /// Number of the first section, in steps from C.
     first: i64,
+    /// Distance from ξ = 0 within which feet are asked for \[mm\].
+    beside: f64,
     /// The tangent plane at C.
     plane: Section,
-}
-
-/// Successive nodes of a strip in one section over which ξ ascends.
-#[derive(Debug, Clone)]
-struct Run {
-    strip: usize,
-    first: usize,
-    /// ξ of the nodes \[mm\].
-    xi: Vec<f64>,
 }
 
 /// The point of the surface on a line along ζ.
@@ -97,10 +86,10 @@ pub struct LoftFoot {
     steps: [[f64; 2]; 2],
 }
 
-/// Feet of lines close to each other, each found from the one before.
+/// Feet of lines close to each other, each found from the one before, on a body that is borrowed or kept.
 #[derive(Debug)]
-pub struct Feet<'a> {
-    body: &'a FramedLoft,
+pub struct Feet<B> {
+    body: B,
     /// The last foot, and its (ξ, η) \[mm\].
     last: Option<(LoftFoot, [f64; 2])>,
 }
@@ -152,6 +141,18 @@ impl FramedLoft {
         (origin, axes): ([f64; 3], [[f64; 3]; 3]),
         along: f64,
     ) -> Result<Self> {
+        let line = profile::Arc::line([-FARTHEST, 0.0], [FARTHEST, 0.0])?;
+        let plane = Profile::new("tangent plane", "", vec![Segment::arc(line)])?;
+        let plane = Section::own_axes(&plane, Side::Rail);
+        Ok(Self::looking((loft, laid), (origin, axes), along, plane))
+    }
+
+    fn looking(
+        (loft, laid): (Arc<Loft>, Laid),
+        (origin, axes): ([f64; 3], [[f64; 3]; 3]),
+        along: f64,
+        plane: Section,
+    ) -> Self {
         let farthest = match laid {
             Laid::Along(_) => FARTHEST,
             Laid::Around { radius, .. } => FARTHEST_AROUND * radius,
@@ -159,10 +160,23 @@ impl FramedLoft {
         let [from, to] = loft.reach().map(|y| (y - along).clamp(-farthest, farthest) / LEVEL);
         let (first, last) = (from.floor() as i64, to.ceil() as i64);
         let levels = (first..=last).map(|_| OnceLock::new()).collect();
-        let line = profile::Arc::line([-FARTHEST, 0.0], [FARTHEST, 0.0])?;
-        let plane = Profile::new("tangent plane", "", vec![Segment::arc(line)])?;
-        let plane = Section::own_axes(&plane, Side::Rail);
-        Ok(Self { loft, laid, origin, axes, along, levels, first, plane })
+        Self { loft, laid, origin, axes, along, levels, first, beside: f64::INFINITY, plane }
+    }
+
+    /// Looks at the body from the point (ξ, 0, ζ) \[mm\] of the frame along a normal that leans by α about η: it is (−sin α, 0, cos α).
+    /// What is made has feet at ξ = 0 only, and none farther in front of that point than 10 mm.
+    pub fn turned(&self, [xi, zeta]: [f64; 2], [sin, cos]: [f64; 2]) -> Self {
+        let [across, ahead, up] = self.axes;
+        let mixed = |a: f64, b: f64| [0, 1, 2].map(|k| a * across[k] + b * up[k]);
+        let moved = mixed(xi, zeta);
+        let origin = [0, 1, 2].map(|k| self.origin[k] + moved[k]);
+        let along = match self.laid {
+            Laid::Along(_) => self.along + moved[1],
+            Laid::Around { radius, .. } => self.along + radius * (moved[1] / (radius + origin[2])).asin(),
+        };
+        let axes = [mixed(cos, sin), ahead, mixed(-sin, cos)];
+        let body = (Arc::clone(&self.loft), self.laid);
+        Self { beside: 0.0, ..Self::looking(body, (origin, axes), along, self.plane.clone()) }
     }
 
     /// Which body it is.
@@ -257,6 +271,11 @@ impl FramedLoft {
                     feet.push(foot);
                 }
             }
+        }
+        if self.beside.is_finite() {
+            // What the line meets far behind the point that it begins at is on the other side of that body.
+            let outward = if self.side() == Side::Rail { 1.0 } else { -1.0 };
+            feet.retain(|foot| outward * foot.zeta <= FLANGEWAY);
         }
         feet.sort_by(|a, b| a.zeta.total_cmp(&b.zeta));
         if self.side() == Side::Wheel {
@@ -362,32 +381,9 @@ impl FramedLoft {
 
     fn level(&self, level: i64) -> &[Run] {
         let Ok(index) = usize::try_from(level - self.first) else { return &[] };
-        self.levels.get(index).map_or(&[], |runs| runs.get_or_init(|| self.runs(LEVEL * level as f64)))
-    }
-
-    /// Finds the runs in the section at `ahead` \[mm\] of C.
-    fn runs(&self, ahead: f64) -> Vec<Run> {
-        let y = self.along + ahead;
-        let mut runs: Vec<Run> = Vec::new();
-        for (strip, own) in self.loft.strips.iter().enumerate() {
-            let [from, to] = own.reach();
-            // A part that begins within a step is there for the feet that it leads to.
-            if y < from - LEVEL || y > to + LEVEL {
-                continue;
-            }
-            let y = y.clamp(from, to);
-            let mut open = false;
-            for node in 0..=own.cells() {
-                let xi = self.seen(self.point(own, [node as f64, y]).at)[0];
-                match runs.last_mut().filter(|_| open) {
-                    Some(run) if run.xi[run.xi.len() - 1] < xi => run.xi.push(xi),
-                    _ => runs.push(Run { strip, first: node, xi: vec![xi] }),
-                }
-                open = true;
-            }
-        }
-        runs.retain(|run| run.xi.len() > 1);
-        runs
+        let (y, xi) = (self.along + LEVEL * level as f64, |at: [f64; 2], y: f64| self.seen_from(at, y)[0]);
+        let made = || runs(&self.loft, xi, y, self.beside);
+        self.levels.get(index).map_or(&[], |runs| runs.get_or_init(made))
     }
 }
 
@@ -397,10 +393,15 @@ fn on(strip: &Strip, [u, y]: [f64; 2]) -> bool {
     u >= -ROUNDING && u <= strip.cells() as f64 + ROUNDING && y >= from - ROUNDING && y <= to + ROUNDING
 }
 
-impl<'a> Feet<'a> {
+impl<B: Deref<Target = FramedLoft>> Feet<B> {
     /// Begins without a foot.
-    pub fn new(body: &'a FramedLoft) -> Self {
+    pub fn new(body: B) -> Self {
         Self { body, last: None }
+    }
+
+    /// The body.
+    pub fn body(&self) -> &FramedLoft {
+        &self.body
     }
 
     /// Forgets the last foot, so that what comes next has the same bits whatever was before.
@@ -435,23 +436,5 @@ impl LoftFoot {
     /// The place that a step in ξ and η \[mm\] leads to along the tangent plane.
     fn moved(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| self.place[k] + xi * self.steps[0][k] + eta * self.steps[1][k])
-    }
-}
-
-impl Run {
-    fn holds(&self, xi: f64) -> bool {
-        self.xi[0] - BESIDE <= xi && xi <= self.xi[self.xi.len() - 1] + BESIDE
-    }
-
-    /// Whether ξ \[mm\] lies in it, off its ends.
-    fn covers(&self, xi: f64) -> bool {
-        self.xi[0] < xi && xi < self.xi[self.xi.len() - 1]
-    }
-
-    /// The parameter u at ξ \[mm\], by straight lines.
-    fn place(&self, xi: f64) -> f64 {
-        let k = self.xi.partition_point(|at| *at <= xi).clamp(1, self.xi.len() - 1);
-        let share = (xi - self.xi[k - 1]) / (self.xi[k] - self.xi[k - 1]);
-        (self.first + k - 1) as f64 + share.clamp(0.0, 1.0)
     }
 }

@@ -26,6 +26,7 @@ mod build;
 mod framed;
 mod joining;
 mod kept;
+mod runs;
 mod section;
 mod space;
 mod strip;

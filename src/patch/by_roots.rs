@@ -4,32 +4,19 @@
 //! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where its hollow is narrower than
 //! the sum of the bodies' curvatures around their axles allows: κ sin²χ > 1/ϱ_W + 1/ϱ_R.
 
+use super::level::Level;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS};
-use crate::conformal::{NormalGap, RailPoint};
+use crate::conformal::NormalGap;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
-use crate::separation::Evaluator;
 
 /// Factor by which an end of a slice is sought farther out.
 const WIDER: f64 = 1.25;
 
-/// Half the step \[mm\] of a difference along σ. A turn of the gap that is found with it is off by less than 1e-6 mm, and its depth by
-/// less than rounding.
-const HALF_STEP: f64 = 1e-5;
-
-/// The gap whose level δ bounds the patch.
-#[derive(Debug)]
-enum Gap<'a> {
-    /// s(ξ, η).
-    Plane(Evaluator<'a>),
-    /// t(σ, η) + δ (1 − cos α), which is δ where t is δ cos α.
-    Rail(NormalGap<'a>),
-}
-
 /// The slices of a placed pair at one approach.
 #[derive(Debug)]
 pub(super) struct ByRoots<'a> {
-    gap: Gap<'a>,
+    gap: Level<'a>,
     /// Whether the lowest place along η may be off η = 0.
     skewed: bool,
     /// Approach δ \[mm\].
@@ -44,15 +31,15 @@ impl<'a> ByRoots<'a> {
     /// Makes the slices of a placed pair over its tangent plane; `None` on a rail.
     pub(super) fn on_roller(placement: &'a Placement, approach: f64) -> Option<Self> {
         placement.under()?;
-        Some(Self::new(Gap::Plane(Evaluator::new(placement)), placement, approach))
+        Some(Self::new(Level::plane(placement), placement, approach))
     }
 
     /// Makes the slices of a placed pair over the rail's surface.
     pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
-        Self::new(Gap::Rail(NormalGap::new(placement)), placement, approach)
+        Self::new(Level::over_rail(placement, approach), placement, approach)
     }
 
-    fn new(gap: Gap<'a>, placement: &Placement, approach: f64) -> Self {
+    fn new(gap: Level<'a>, placement: &Placement, approach: f64) -> Self {
         let around = placement.rolling_radius().recip() + placement.rail().axle_distance().recip();
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
         Self { gap, skewed: placement.skew() != 0.0, approach, opening: 0.5 * around, step }
@@ -60,45 +47,17 @@ impl<'a> ByRoots<'a> {
 
     /// Returns the normal gap of slices over the rail's surface; `None` for those over the tangent plane.
     pub(super) fn normal_gap(&self) -> Option<&NormalGap<'a>> {
-        match &self.gap {
-            Gap::Plane(_) => None,
-            Gap::Rail(gap) => Some(gap),
-        }
+        self.gap.normal_gap()
     }
 
     /// Returns the gap \[mm\]; NaN where a body has no surface.
     pub(super) fn gap(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.gap {
-            Gap::Plane(evaluator) => evaluator.separation(xi, eta),
-            Gap::Rail(gap) => gap.point(xi, eta).map_or(f64::NAN, |point| {
-                // 1 − cos α without a difference of nearly equal numbers.
-                let RailPoint { cos, sin, .. } = point.rail;
-                point.gap + self.approach * (sin * sin / (1.0 + cos))
-            }),
-        }
+        self.gap.gap(xi, eta)
     }
 
-    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap. Over the rail's surface ∂/∂σ is a difference over 2e-5 mm, which is right where the gap turns but
-    /// not to all digits.
+    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap.
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        match &mut self.gap {
-            Gap::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1,
-            Gap::Rail(gap) => {
-                let across = gap.slope(xi, eta);
-                let [low, high] = gap.rail().reach().unwrap_or([f64::NAN; 2]);
-                let ends = [(xi - HALF_STEP).max(low), (xi + HALF_STEP).min(high)];
-                let [a, b] = ends.map(|xi| self.gap(xi, eta));
-                [(b - a) / (ends[1] - ends[0]), across]
-            }
-        }
-    }
-
-    /// Returns ∂/∂η of the gap.
-    fn slope(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.gap {
-            Gap::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1[1],
-            Gap::Rail(gap) => gap.slope(xi, eta),
-        }
+        self.gap.gradient(xi, eta)
     }
 
     /// Returns η \[mm\] of the least gap at ξ; NaN where a body has no surface.
@@ -106,31 +65,31 @@ impl<'a> ByRoots<'a> {
         if !self.skewed {
             return 0.0;
         }
-        let at_middle = self.slope(xi, 0.0);
+        let at_middle = self.gap.slope(xi, 0.0);
         if at_middle == 0.0 || at_middle.is_nan() {
             return 0.0 * at_middle;
         }
         let (mut near, mut far) = (0.0, -at_middle / self.opening);
-        while self.slope(xi, far) * at_middle > 0.0 {
+        while self.gap.slope(xi, far) * at_middle > 0.0 {
             (near, far) = (far, WIDER * far);
         }
-        if self.slope(xi, far).is_nan() {
-            far = last_where(|eta| !self.slope(xi, eta).is_nan(), near, far);
+        if self.gap.slope(xi, far).is_nan() {
+            far = last_where(|eta| !self.gap.slope(xi, eta).is_nan(), near, far);
         }
         // Without a root the gap falls up to the end of the surface.
-        bracketed(|eta| self.slope(xi, eta), near, far).unwrap_or(far)
+        bracketed(|eta| self.gap.slope(xi, eta), near, far).unwrap_or(far)
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.
     pub(super) fn depth(&mut self, xi: f64) -> f64 {
         let eta = self.lowest(xi);
-        self.gap(xi, eta) - self.approach
+        self.gap.gap(xi, eta) - self.approach
     }
 
     /// Returns both ends of the slice at ξ; `None` outside the patch.
     pub(super) fn edges(&mut self, xi: f64) -> Option<[Edge; 2]> {
         let lowest = self.lowest(xi);
-        let depth = self.approach - self.gap(xi, lowest);
+        let depth = self.approach - self.gap.gap(xi, lowest);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
@@ -144,7 +103,7 @@ impl<'a> ByRoots<'a> {
     /// Returns the end of a slice on one side of its lowest place, to which `reach` \[mm\] leads.
     fn edge(&mut self, xi: f64, lowest: f64, reach: f64) -> Edge {
         let approach = self.approach;
-        let mut miss = |eta: f64| self.gap(xi, eta) - approach;
+        let mut miss = |eta: f64| self.gap.gap(xi, eta) - approach;
         if reach == 0.0 {
             return Edge { eta: lowest, ledge: false };
         }

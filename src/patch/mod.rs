@@ -6,6 +6,7 @@ mod components;
 mod corners;
 mod edges;
 mod grading;
+mod level;
 mod loops;
 mod measure;
 mod outline;

@@ -4,6 +4,7 @@
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
 use super::by_roots::ByRoots;
+use super::level::Level;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use super::varying::Varying;
 use crate::numerics::lanes::{Lanes, MANY};
@@ -62,7 +63,7 @@ impl<'a> Slicer<'a> {
             by_roots: ByRoots::on_roller(placement, approach),
             skewed: (placement.skew() != 0.0 && placement.under().is_none() && placement.lofted().is_none())
                 .then(|| Skewed::new(placement, approach)),
-            varying: Varying::new(placement, approach),
+            varying: placement.lofted().map(|_| Varying::new(placement, approach, Level::plane(placement))),
             approach,
         }
     }
@@ -70,7 +71,9 @@ impl<'a> Slicer<'a> {
     /// Makes a slicer of the patch over the rail's surface: ξ is σ, and the gap is t(σ, η) + δ (1 − cos α).
     pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
         let by_roots = Some(ByRoots::over_rail(placement, approach));
-        Self { by_roots, skewed: None, ..Self::new(placement, approach) }
+        let level = || Level::over_rail(placement, approach);
+        let varying = placement.lofted().map(|_| Varying::new(placement, approach, level()));
+        Self { by_roots, skewed: None, varying, ..Self::new(placement, approach) }
     }
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.

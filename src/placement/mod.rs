@@ -7,9 +7,9 @@ mod placed;
 mod swept;
 mod track;
 
-pub use motion::{Creepages, Motion, Pitch, Rates};
 #[cfg(feature = "files")]
-pub(crate) use motion::{on_roller, with_varying};
+pub(crate) use motion::on_roller;
+pub use motion::{Creepages, Motion, Pitch, Rates};
 pub use placed::{Body, Pair, Placement};
 pub use swept::Generator;
 pub use track::{RailDistance, Track, WheelDistance, Wheelset};

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::placed::Placement;
 use crate::error::{Error, Result, finite};
+use crate::lofted::FramedLoft;
 
 /// How fast a wheel turns about its axle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -105,13 +106,10 @@ impl Motion {
     /// assumed. The part of the velocity along ζ does not enter: it opens or closes the contact.
     ///
     /// # Errors
-    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known; a body that varies.
+    /// A wheel that neither moves nor turns along η at C; a roller, whose own turning is not known.
     pub fn creepages(&self, placement: &Placement, half: f64, radius: f64) -> Result<Creepages> {
         if placement.under().is_some() {
             return Err(on_roller());
-        }
-        if let Some(varying) = placement.varying() {
-            return Err(with_varying(varying));
         }
         let Rates { lateral, vertical, yaw, roll, pitch } = self.rates;
         let pitch = match pitch {
@@ -122,9 +120,9 @@ impl Motion {
         let axes = Axes::new(placement);
         let up = axes.up * placement.rolling_radius();
         let arm = axes.axle * (half + placement.wheel().point.station.x) - up;
-        let slow = axes.yaw * yaw + Vector3::y() * roll;
+        let slow = axes.yaw * yaw + axes.ahead * roll;
         let carried =
-            Vector3::y() * self.speed + axes.track_x * lateral + axes.track_z * vertical + slow.cross(&arm);
+            axes.ahead * self.speed + axes.track_x * lateral + axes.track_z * vertical + slow.cross(&arm);
         let fast = axes.axle * pitch;
         let turned = fast.cross(&-up);
         let speed = (carried.y.abs() + turned.y.abs()) / 2.0;
@@ -167,12 +165,6 @@ pub(crate) fn on_roller() -> Error {
     Error::new("motion", "a motion over a roller", expected, "leave the motion out")
 }
 
-/// Returns the error of a motion over a rail that varies along the track.
-pub(crate) fn with_varying(name: &str) -> Error {
-    let expected = "bodies of one profile each; creepages are not available for others yet";
-    Error::new("motion", format!("a motion with {name}"), expected, "leave the motion out")
-}
-
 /// Directions in the contact frame (ξ, η, ζ), all of length 1.
 struct Axes {
     /// The axle, to the right.
@@ -181,6 +173,8 @@ struct Axes {
     up: Vector3<f64>,
     /// The track's x, to the right.
     track_x: Vector3<f64>,
+    /// The track's y, forward.
+    ahead: Vector3<f64>,
     /// The track's z, up.
     track_z: Vector3<f64>,
     /// The axis that the wheelset yaws about: the track's z, turned by the roll.
@@ -190,14 +184,24 @@ struct Axes {
 impl Axes {
     fn new(placement: &Placement) -> Self {
         let [rail, wheel] = [placement.rail(), placement.wheel()].map(|body| body.point.station);
+        // A direction of a body that varies is a column of its frame's axes.
+        let seen = |lofted: &FramedLoft, k: usize| Vector3::from(lofted.axes().map(|axis| axis[k]));
         let across = placement.skew_rotation();
         let across = Vector3::new(across.re, across.im, 0.0);
-        let axle = across * wheel.cos - Vector3::z() * wheel.sin;
-        let up = across * wheel.sin + Vector3::z() * wheel.cos;
-        let track_x = Vector3::new(rail.cos, 0.0, -rail.sin);
-        let track_z = Vector3::new(rail.sin, 0.0, rail.cos);
+        let [axle, up] = match placement.lofted_wheel() {
+            Some(lofted) => [seen(lofted, 0), -seen(lofted, 2)],
+            None => {
+                [across * wheel.cos - Vector3::z() * wheel.sin, across * wheel.sin + Vector3::z() * wheel.cos]
+            }
+        };
+        let [track_x, ahead, track_z] = match placement.lofted_rail() {
+            Some(lofted) => [0, 1, 2].map(|k| seen(lofted, k)),
+            None => {
+                [Vector3::new(rail.cos, 0.0, -rail.sin), Vector3::y(), Vector3::new(rail.sin, 0.0, rail.cos)]
+            }
+        };
         let yaw = (track_z * axle.dot(&track_x) - track_x * axle.dot(&track_z)).normalize();
-        Self { axle, up, track_x, track_z, yaw }
+        Self { axle, up, track_x, ahead, track_z, yaw }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::load::{Elastic, effective_modulus};
 use crate::lofted::LoftedBody;
 use crate::mesh::checked_size;
 use crate::numerics::bodies::Bodies;
-use crate::placement::{on_roller, with_varying};
+use crate::placement::on_roller;
 
 /// Smallest approach other than 0 \[mm\], and smallest load \[N\]. They are far below any real ones, and their powers do
 /// not underflow.
@@ -72,7 +72,7 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     let axes = asked_axes(&scene.grid)?;
     let (standing, profiles) = standing(scene, profiles()?)?;
     if let Some(side) = profiles.varying().next() {
-        asked_of_varying(LoftedBody::name(side), &question, axes.reference)?;
+        asked_of_varying(LoftedBody::name(side), &question)?;
     }
     let of = |own: &SideProfiles| Landmarks::new(&own.pair);
     let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
@@ -81,16 +81,7 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
 }
 
 /// Refuses what there is not with a body that varies, of this name.
-fn asked_of_varying(name: &str, question: &Question, reference: Reference) -> Result<()> {
-    if question.motion.is_some() {
-        return Err(with_varying(name));
-    }
-    if reference == Reference::Rail {
-        let found = format!("\"rail\" with {name}");
-        let expected =
-            "grid.reference = \"plane\": the conformal reference is of extruded rails and round wheels";
-        return Err(Error::new("grid: reference", found, expected, "leave it out"));
-    }
+fn asked_of_varying(name: &str, question: &Question) -> Result<()> {
     match question.approach {
         Some(ApproachBy::Given(approach)) if approach > DEEPEST_IN_SLICES => {
             let expected = format!("0 to {DEEPEST_IN_SLICES} mm with {name}");

@@ -5,7 +5,7 @@ use nalgebra::{Unit, Vector3};
 use super::columns::skewed;
 use super::demand::{Demand, FULL_PRECISION};
 use super::relief::Relief;
-use crate::lofted::Feet;
+use crate::lofted::{Feet, FramedLoft};
 use crate::numerics::lanes::MANY;
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -45,7 +45,7 @@ pub struct Evaluator<'a> {
     /// The lower profile over a roller, upside down; `None` for a rail.
     lower: Option<Relief<'a>>,
     /// Feet on a rail that varies along the track, over whose tangent plane the wheel's height is known.
-    feet: Option<Feet<'a>>,
+    feet: Option<Feet<&'a FramedLoft>>,
 }
 
 /// The wheel, by its height over the lower profile, or over the tangent plane of a rail that varies.
@@ -54,7 +54,7 @@ enum Upper<'a> {
     /// A wheel of revolution.
     Round(Box<Relief<'a>>),
     /// A wheel that varies, over the profile of its rail.
-    Varying(Feet<'a>, &'a Section),
+    Varying(Feet<&'a FramedLoft>, &'a Section),
 }
 
 impl<'a> Upper<'a> {

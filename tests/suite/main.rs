@@ -51,4 +51,5 @@ mod tables;
 mod triangles;
 mod turned_wheels;
 mod two_sides;
+mod varying_normals;
 mod yawed_patches;

@@ -8,7 +8,7 @@ use wheelrail::error::Result;
 use wheelrail::load::curvatures;
 use wheelrail::lofted::{Flat, LoftedBody, LoftedWheel};
 use wheelrail::patch::Patch;
-use wheelrail::placement::Placement;
+use wheelrail::placement::{Creepages, Motion, Placement, Rates};
 use wheelrail::scene;
 use wheelrail::search::TrackSide;
 use wheelrail::{Arc as Segments, Evaluator, Pair, Profile, Segment, Window, feasibility, standards};
@@ -22,13 +22,13 @@ use super::over_slices::{example, floods, marches_as_it_runs};
 const SLOPE: f64 = 0.05;
 
 /// A tread on a cone.
-fn cone() -> Result<Profile> {
+pub(super) fn cone() -> Result<Profile> {
     let line = Segments::line([-60.0, 60.0 * SLOPE], [60.0, -60.0 * SLOPE])?;
     Profile::new("cone", "", vec![Segment::arc(line)])
 }
 
 /// The right-hand contact of a wheel that is turned by a pitch \[rad\], with the pair placed there.
-fn placed(
+pub(super) fn placed(
     wheel: &LoftedWheel,
     rail: &Profile,
     [lateral, yaw, roll]: [f64; 3],
@@ -40,7 +40,7 @@ fn placed(
     of_right(&march.turned(pitch)?)?.contact.placed_on(&pair, &body, 0.0)
 }
 
-fn random_position(random: &mut Random) -> [f64; 3] {
+pub(super) fn random_position(random: &mut Random) -> [f64; 3] {
     [random.between(-6.0, 6.0), random.between(-0.02, 0.02), random.between(-0.004, 0.004)]
 }
 
@@ -74,6 +74,16 @@ fn a_radius_that_does_not_vary_has_the_separation_and_patch_of_the_round_wheel()
         }
         let [a, b] = [curvatures(&lofted), curvatures(&round)];
         assert!(a.a_per_mm.is_nan() || (a.a_per_mm - b.a_per_mm).abs() < 1e-9, "{a:?} {b:?}");
+        let rates = Rates { lateral: 90.0, yaw: 0.04, roll: 0.03, ..Rates::default() };
+        let motion = Motion::new(2e4, rates)?;
+        let [c, d] = [&lofted, &round].map(|placement| motion.creepages(placement, 680.0, RADIUS));
+        let (c, d) = (c?, d?);
+        let slips = |c: &Creepages| {
+            [c.longitudinal, c.lateral, RADIUS * c.spin, RADIUS * c.turn[0], RADIUS * c.turn[1]]
+        };
+        for (found, expected) in slips(&c).into_iter().zip(slips(&d)) {
+            assert!((found - expected).abs() < 1e-9, "{contact:?}: {c:?} {d:?}");
+        }
         let [area, expected] =
             [&lofted, &round].map(|placement| Patch::new(placement, 0.05, &Window::UNBOUNDED).area());
         assert!((area / expected - 1.0).abs() < 1e-7, "{contact:?}: {area} {expected}");
@@ -165,7 +175,7 @@ fn patches_of_random_flats_are_what_a_flood_fill_finds() -> Result<()> {
 }
 
 /// A run of the example at a pitch \[rad\].
-fn run(pitch: f64, more: &str) -> Result<Run> {
+pub(super) fn run(pitch: f64, more: &str) -> Result<Run> {
     let (folder, text) = example("wheel_flat");
     let text = text
         .replace("lateral = 0.0", &format!("lateral = 0.0\npitch = {}", format!("{pitch:?}").to_lowercase()));
@@ -243,8 +253,6 @@ fn a_single_wheel_with_a_flat_stands_as_that_of_a_wheelset_does() -> Result<()> 
 #[test]
 fn what_wheels_that_vary_do_not_have_is_refused_by_name() {
     for (pitch, more, message) in [
-        (0.0, "[grid]\nreference = \"rail\"", "grid: reference: found \"rail\" with a wheel that varies"),
-        (0.0, "[motion]\nspeed = 10.0", "motion: found a motion with a wheel that varies"),
         (0.0, "[patch]\napproach = 0.05\nframe = \"weighted\"", "patch: frame: found"),
         (0.0, "[roller]\nradius = 350.0", "roller: found one"),
         (f64::NAN, "", "wheelset: pitch: found NaN"),

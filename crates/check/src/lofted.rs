@@ -42,6 +42,9 @@ const CLOSER: f64 = 0.125;
 /// Cell whose diagonals give the normal, as a share of a coarse one.
 const NORMAL_CELL: f64 = 1.0 / 64.0;
 
+/// Distance from a point \[mm\] within which a ray meets the sheet that it is said to be on: beyond what a coarse mesh is off.
+const NEAR: f64 = 0.5;
+
 /// Largest difference that counts as agreement, as a multiple of the checker's own estimate.
 const SAFETY: f64 = 4.0;
 
@@ -65,6 +68,8 @@ pub struct LoftedReport {
     pub separation: Differences,
     /// Differences of the unit normals of the body that varies.
     pub normals: Differences,
+    /// Distances of that body from the ends of the normal gap's lines, along ζ \[mm\]; `None` for a grid over the tangent plane.
+    pub ends: Option<Differences>,
     /// Time of the check \[s\].
     pub seconds: f64,
 }
@@ -82,9 +87,10 @@ impl fmt::Display for LoftedReport {
             "  points: {} of {} compared; {} without a surface, {} at an end or steep, {} where only one of both finds one",
             self.separation.compared, self.points, self.no_surface, self.steep_or_end, self.surface_disputed
         )?;
-        for (name, unit, found) in
-            [("|s - s by rays|", " mm", &self.separation), ("|n - n of the meshes|", "", &self.normals)]
-        {
+        let plane =
+            [("|s - s by rays|", " mm", &self.separation), ("|n - n of the meshes|", "", &self.normals)];
+        let ends = self.ends.iter().map(|ends| ("ends of t off the mesh", " mm", ends));
+        for (name, unit, found) in plane.into_iter().chain(ends) {
             let [xi, eta] = found.worst_at_mm;
             writeln!(
                 f,
@@ -96,7 +102,8 @@ impl fmt::Display for LoftedReport {
     }
 }
 
-/// Checks the separation of a contact with a body that varies, and the normals of that body.
+/// Checks the separation of a contact with a body that varies, the normals of that body, and points (ξ, η, ζ) \[mm\] at which lines along
+/// the rail's normals end on it.
 ///
 /// Cost: about a second.
 ///
@@ -106,6 +113,7 @@ pub(super) fn check_lofted(
     (placement, lofted): (&Placement, &FramedLoft),
     request: &Request,
     answer: &mut dyn FnMut(f64, f64) -> Answer,
+    ends: Option<&[[f64; 3]]>,
 ) -> Result<LoftedReport> {
     let start = Instant::now();
     let Request { window, .. } = request;
@@ -148,7 +156,10 @@ pub(super) fn check_lofted(
         }
     }
     let (separation, normals) = (Differences::of(&separation), Differences::of(&normals));
-    let agrees = separation.within() && normals.within() && surface_disputed == 0;
+    let ends =
+        ends.map(|ends| Differences::of(&ends.iter().filter_map(|at| own.off(*at)).collect::<Vec<_>>()));
+    let both = separation.within() && normals.within() && ends.as_ref().is_none_or(Differences::within);
+    let agrees = both && surface_disputed == 0;
     Ok(LoftedReport {
         agrees,
         points: GRID[0] * GRID[1],
@@ -157,6 +168,7 @@ pub(super) fn check_lofted(
         surface_disputed,
         separation,
         normals,
+        ends,
         seconds: start.elapsed().as_secs_f64(),
     })
 }
@@ -279,6 +291,19 @@ impl<'a> MeshedLoft<'a> {
         let behind =
             if rail { RayOrigin::DownFrom(zeta - FLANGEWAY) } else { RayOrigin::UpFrom(zeta + FLANGEWAY) };
         self.ray(at, behind)
+    }
+
+    /// Measures how far the nearest sheet lies from a point along ζ, with what is allowed and (ξ, η); `None` where it is steep.
+    fn off(&self, [xi, eta, zeta]: [f64; 3]) -> Option<(f64, f64, [f64; 2])> {
+        let rail = self.lofted.side() == Side::Rail;
+        let origin = if rail { RayOrigin::DownFrom(zeta + NEAR) } else { RayOrigin::UpFrom(zeta - NEAR) };
+        match self.ray([xi, eta], origin) {
+            Met::Steep => None,
+            Met::Nothing => Some((f64::INFINITY, 0.0, [xi, eta])),
+            Met::At { zeta: met, upright, .. } => {
+                Some(((met - zeta).abs(), ROUNDINGS * self.size / upright, [xi, eta]))
+            }
+        }
     }
 
     fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> Met {

@@ -8,7 +8,7 @@ use wheelrail::conformal::NormalGap;
 use wheelrail::error::{Error, Result};
 use wheelrail::nalgebra::{Unit, Vector3};
 use wheelrail::placement::Placement;
-use wheelrail::profile::{Profile, Segment, Shape};
+use wheelrail::profile::{Profile, Segment, Shape, Side};
 
 use super::body::Solid;
 use super::closest::to_point;
@@ -57,6 +57,14 @@ impl NormalGapSample {
             wheel_normal: point.wheel_normal?,
         })
     }
+
+    /// The point (ξ, η, ζ) \[mm\] where the line of the normal gap ends on a body.
+    pub(super) fn end(&self, side: Side) -> [f64; 3] {
+        match side {
+            Side::Rail => self.point,
+            Side::Wheel => [0, 1, 2].map(|k| self.point[k] + self.gap * self.rail_normal[k]),
+        }
+    }
 }
 
 /// What the comparison found.
@@ -95,7 +103,8 @@ impl fmt::Display for NormalGapReport {
     }
 }
 
-/// Compares normal gaps with the closest distances of their points from the wheel's mesh.
+/// Compares normal gaps with the closest distances of the rail's points from the wheel's mesh; of a wheel that varies, with those of its
+/// points from the rail's mesh.
 ///
 /// Cost: about a millisecond a point.
 ///
@@ -104,8 +113,14 @@ impl fmt::Display for NormalGapReport {
 pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> Result<NormalGapReport> {
     let reach = samples.iter().map(|sample| Vector3::from(sample.point).norm() + sample.gap.abs());
     let reach = reach.fold(0.0, f64::max);
-    let solid = Some(SampledSurface::wheel(placement)).filter(|_| reach.is_finite());
-    let Some(wheel) = solid.and_then(|surface| Solid::new(surface, 2.0 * reach)) else {
+    let from = if placement.lofted_wheel().is_some() { Side::Wheel } else { Side::Rail };
+    let surface = match from {
+        Side::Rail => SampledSurface::wheel(placement),
+        Side::Wheel => SampledSurface::rail(placement),
+    };
+    let Some(other) =
+        Some(surface).filter(|_| reach.is_finite()).and_then(|surface| Solid::new(surface, 2.0 * reach))
+    else {
         let expected = "finite points and profiles";
         return Err(Error::new(
             "check: normal gap",
@@ -127,8 +142,8 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         agrees: true,
     };
     for sample in samples {
-        let [xi, eta, zeta] = sample.point;
-        let Some(closest) = to_point(&wheel, Vector::new(xi, eta, zeta)) else { continue };
+        let [xi, eta, zeta] = sample.end(from);
+        let Some(closest) = to_point(&other, Vector::new(xi, eta, zeta)) else { continue };
         let rounding = ROUNDINGS * (placement.wheel_radius() + reach);
         let allowed = SAFETY * (floor + closest.error) + rounding;
         let longer = closest.distance - sample.gap.abs() - allowed;
@@ -139,9 +154,12 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         let (t, sine) = (sample.gap.abs(), sample.rail_normal.cross(&sample.wheel_normal).norm());
         if sine < ONE_DIRECTION {
             // Of a tangent plane at the angle β the closest point is t cosβ away; the wheel bends from it by at most its sharpest
-            // radius.
+            // radius. The line is a normal of the rail.
             let bend = t * sine * t * sine / sharpest;
-            let expected = [t * (1.0 - sine * sine).sqrt() - bend, t];
+            let expected = match from {
+                Side::Rail => [t * (1.0 - sine * sine).sqrt() - bend, t],
+                Side::Wheel => [t, t],
+            };
             let difference = (expected[0] - closest.distance).max(closest.distance - expected[1]);
             report.aligned += 1;
             report.aligned_mm = report.aligned_mm.max(difference - allowed);

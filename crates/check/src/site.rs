@@ -20,11 +20,11 @@ const SAMPLES: usize = 9;
 /// The result for a contact of a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct SiteReport {
-    /// s and the normals over the tangent plane; `None` on a rail that varies along the track.
+    /// s and the normals over the tangent plane; `None` with a body that varies.
     pub plane: Option<Report>,
     /// The normal gap; `None` for a grid over the tangent plane.
     pub rail: Option<NormalGapReport>,
-    /// s and the rail's normals on a rail that varies along the track; `None` on a swept one.
+    /// s and the normals of a body that varies; `None` where both are swept.
     pub lofted: Option<LoftedReport>,
 }
 
@@ -54,13 +54,15 @@ pub fn check_site(site: &Site) -> Result<SiteReport> {
     let mut evaluator = Evaluator::new(placement);
     let request = Request { window: site.window(), approach: site.approach() };
     let mut answer = |xi: f64, eta: f64| Answer::of(&mut evaluator, xi, eta);
+    let samples = normal_gaps(site);
+    let rail = samples.as_ref().map(|samples| check_normal_gap(placement, samples)).transpose()?;
     if let Some(lofted) = placement.lofted() {
-        let lofted = Some(check_lofted((placement, lofted), &request, &mut answer)?);
-        return Ok(SiteReport { plane: None, rail: None, lofted });
+        let ends: Option<Vec<[f64; 3]>> =
+            samples.map(|samples| samples.iter().map(|sample| sample.end(lofted.side())).collect());
+        let lofted = Some(check_lofted((placement, lofted), &request, &mut answer, ends.as_deref())?);
+        return Ok(SiteReport { plane: None, rail, lofted });
     }
     let plane = Some(check(placement, &request, &mut answer)?);
-    let samples = normal_gaps(site);
-    let rail = samples.map(|samples| check_normal_gap(placement, &samples)).transpose()?;
     Ok(SiteReport { plane, rail, lofted: None })
 }
 

@@ -53,17 +53,6 @@ impl Contact {
         self.spot.placement()
     }
 
-    /// Gives the placement for what takes bodies of one profile alone.
-    fn over_one_profile(&self) -> PyResult<&Placement> {
-        let placement = self.placement()?;
-        if let Some(varying) = placement.varying() {
-            let expected = "bodies of one profile each, which have a midplane and an arc length";
-            let advice = "take `separation` and `patch`";
-            return Err(exception(Error::new("contact", varying, expected, advice)));
-        }
-        Ok(placement)
-    }
-
     /// Checks a load \[N\] or an approach \[mm\], or takes the approach of the case, and E* \[N/mm²\]; warns of what is doubtful.
     fn asked(
         &self,
@@ -235,7 +224,7 @@ impl Contact {
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [sigma, eta] = checked_axes(("sigma", sigma), eta, tolerance)?;
-        let placement = self.over_one_profile()?;
+        let placement = self.placement()?;
         let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
@@ -253,7 +242,7 @@ impl Contact {
         py: Python<'py>,
         sigma: &Bound<'py, PyAny>,
     ) -> PyResult<(Axis<'py>, Axis<'py>, Axis<'py>)> {
-        let rail = RailArcLength::new(self.over_one_profile()?);
+        let rail = RailArcLength::new(self.placement()?);
         let nowhere = [f64::NAN; 3];
         let point =
             |&sigma: &f64| rail.point(sigma).map_or(nowhere, |at| [at.xi, at.zeta, at.sin.atan2(at.cos)]);
@@ -380,7 +369,11 @@ impl Contact {
     /// 101 steps over both bodies if None.
     #[pyo3(signature = (xi = None))]
     fn midsep(&self, xi: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
-        let placement = self.over_one_profile()?;
+        let placement = self.placement()?;
+        if let Some(varying) = placement.varying() {
+            let expected = "bodies of one profile each, which have a midplane";
+            return Err(exception(Error::new("contact", varying, expected, "take `separation`")));
+        }
         let over = || placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, 101));
         let xi = xi.map_or_else(|| Ok(over()), |xi| values("xi", xi))?;
         scene::check_axis("xi", &xi).or_raise()?;

@@ -98,7 +98,7 @@ fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
     let depth = rows[at].1.lowest[1];
     let slope = |xi: f64| {
         let eta = varying.lowest(xi, Some(lane));
-        varying.evaluator.separation_and_gradient(xi, eta).1[0]
+        varying.gap.gradient(xi, eta)[0]
     };
     let turn = change(slope, [from, to], TO_LOWEST);
     // A crease, where s does not turn, may be deeper.

@@ -7,9 +7,9 @@
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
 use crate::numerics::roots::change;
+use crate::patch::level::Level;
 use crate::patch::skewed::slicer::Edge;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
 
 /// Step of the lines of constant ξ \[mm\].
 const STEP: f64 = 0.5;
@@ -74,7 +74,7 @@ pub(super) struct Line {
 /// The slices of a placed pair on a rail that varies at one approach.
 #[derive(Debug)]
 pub(in crate::patch) struct Varying<'a> {
-    pub(super) evaluator: Evaluator<'a>,
+    pub(super) gap: Level<'a>,
     pub(super) approach: f64,
     /// Step along lines of constant ξ \[mm\].
     step: f64,
@@ -85,21 +85,23 @@ pub(in crate::patch) struct Varying<'a> {
 }
 
 impl<'a> Varying<'a> {
-    /// Makes the slices; `None` on a swept rail.
-    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Option<Self> {
-        placement.lofted()?;
+    /// Makes the slices by a gap over a placed pair.
+    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64, gap: Level<'a>) -> Self {
         // Of δ = NaN, where nothing is found, and below 0 the least.
         let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
         let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
         let farthest = FARTHEST.max(FARTHEST_SHARE * half);
-        Some(Self { evaluator: Evaluator::new(placement), approach, step, farthest, lanes: Vec::new() })
+        Self { gap, approach, step, farthest, lanes: Vec::new() }
     }
 
     /// Finds the lines over a window \[ξ, η\], from one end to the other of the range of ξ in which it holds the rail; none if it holds
     /// nothing of it.
     pub(super) fn lines(&mut self, placement: &Placement, window: [[f64; 2]; 2]) -> Vec<Line> {
         let eta = [window[1][0].max(-self.farthest), window[1][1].min(self.farthest)];
-        let reach = placement.lofted().and_then(|rail| rail.reach(eta));
+        let reach = match self.gap.normal_gap() {
+            Some(gap) => gap.rail().reach(),
+            None => placement.lofted().and_then(|body| body.reach(eta)),
+        };
         let Some([from, to]) = reach.filter(|_| eta[0] < eta[1]) else { return Vec::new() };
         let xi = [window[0][0].max(from), window[0][1].min(to)];
         if xi[0] >= xi[1] {
@@ -129,7 +131,7 @@ impl<'a> Varying<'a> {
         let mut found = [0.0; 2];
         for (found, outward) in found.iter_mut().zip([-1.0, 1.0]) {
             let guess = middle + outward * half;
-            let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
+            let mut depth = |eta: f64| self.gap.gap(xi, eta) - approach;
             let around = BESIDE_EDGE.map(|share| [-share, share].map(|by| guess + outward * by * half));
             let held = around.into_iter().find(|ends| depth(ends[0]) < 0.0 && depth(ends[1]) >= 0.0)?;
             *found = change(depth, held, TO_EDGE);
@@ -150,7 +152,7 @@ impl<'a> Varying<'a> {
 
     /// Returns s \[mm\].
     pub(in crate::patch) fn separation(&mut self, xi: f64, eta: f64) -> f64 {
-        self.evaluator.separation(xi, eta)
+        self.gap.gap(xi, eta)
     }
 
     /// Finds the interval of a lane at ξ, that nearest to those of the lines on both sides; without a lane the deepest one.
@@ -209,7 +211,7 @@ impl<'a> Varying<'a> {
             })
             .collect();
         for k in dips.into_iter().rev() {
-            let slope = |eta: f64| self.evaluator.separation_and_gradient(xi, eta).1[1];
+            let slope = |eta: f64| self.gap.slope(xi, eta);
             let eta = change(slope, [points[k - 1][0], points[k + 1][0]], TO_LOWEST);
             let (s, at) = (self.separation(xi, eta), k + usize::from(eta > points[k][0]));
             if s < points[k][1] {

@@ -1,0 +1,94 @@
+//! Runs: stretches of a section over which a body that varies faces the other one, seen from a contact frame.
+
+use std::ops::Range;
+
+use super::build::Loft;
+use super::strip::Strip;
+
+/// Distance along the surface of the sections from which feet are sought \[mm\].
+pub(super) const LEVEL: f64 = 4.0;
+
+/// How far beyond the end of a run feet are sought from it \[mm\]: a part may be that much wider half a step along the track.
+const BESIDE: f64 = 2.0;
+
+/// Successive nodes of a strip in one section over which ξ ascends.
+#[derive(Debug, Clone)]
+pub(super) struct Run {
+    pub strip: usize,
+    first: usize,
+    /// ξ of the nodes \[mm\].
+    pub xi: Vec<f64>,
+}
+
+/// Finds the runs in the section at y \[mm\], as far as feet are asked for from them within a distance \[mm\] of ξ = 0; `xi` gives that of
+/// a point \[x, z\] of a section at y.
+pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, within: f64) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (strip, own) in loft.strips.iter().enumerate() {
+        let [from, to] = own.reach();
+        // A part that begins within a step is there for the feet that it leads to.
+        if y < from - LEVEL || y > to + LEVEL {
+            continue;
+        }
+        let y = y.clamp(from, to);
+        for cells in cells_beside(&xi, own, y, within) {
+            let mut open = false;
+            for node in cells.start..=cells.end {
+                let xi = xi(own.point(node as f64, y).at, y);
+                match runs.last_mut().filter(|_| open) {
+                    Some(run) if run.xi[run.xi.len() - 1] < xi => run.xi.push(xi),
+                    _ => runs.push(Run { strip, first: node, xi: vec![xi] }),
+                }
+                open = true;
+            }
+        }
+    }
+    runs.retain(|run| run.xi.len() > 1);
+    runs
+}
+
+/// Lists the cells of a strip at y \[mm\] that may lie in a run from which feet are sought, as stretches in order.
+fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64, within: f64) -> Vec<Range<usize>> {
+    let (interval, farthest) = (strip.interval_at(y), within + 2.0 * BESIDE + strip.off());
+    let (mut found, mut waiting): (Vec<Range<usize>>, _) = (Vec::new(), vec![1]);
+    if within.is_infinite() {
+        found.push(0..strip.cells());
+        return found;
+    }
+    while let Some(node) = waiting.pop() {
+        let (cells, [x, z]) = (interval.cells(node), interval.bounds(node));
+        let corners = x.into_iter().flat_map(|x| z.map(|z| xi([x, z], y)));
+        let [low, high] =
+            corners.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], xi| [low.min(xi), high.max(xi)]);
+        if cells.is_empty() || low > farthest || high < -farthest {
+            continue;
+        }
+        if interval.only_cell(node).is_none() {
+            waiting.extend([2 * node + 1, 2 * node]);
+            continue;
+        }
+        match found.last_mut().filter(|last| last.end == cells.start) {
+            Some(last) => last.end = cells.end,
+            None => found.push(cells),
+        }
+    }
+    found
+}
+
+impl Run {
+    pub fn holds(&self, xi: f64) -> bool {
+        self.xi[0] - BESIDE <= xi && xi <= self.xi[self.xi.len() - 1] + BESIDE
+    }
+
+    /// Whether ξ \[mm\] lies in it, off its ends.
+    pub fn covers(&self, xi: f64) -> bool {
+        self.xi[0] < xi && xi < self.xi[self.xi.len() - 1]
+    }
+
+    /// The parameter u at ξ \[mm\], by straight lines.
+    pub fn place(&self, xi: f64) -> f64 {
+        let k = self.xi.partition_point(|at| *at <= xi).clamp(1, self.xi.len() - 1);
+        let share = (xi - self.xi[k - 1]) / (self.xi[k] - self.xi[k - 1]);
+        (self.first + k - 1) as f64 + share.clamp(0.0, 1.0)
+    }
+}

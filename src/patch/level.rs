@@ -1,0 +1,89 @@
+//! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
+
+use crate::conformal::{Line, NormalGap, RailPoint};
+use crate::placement::Placement;
+use crate::separation::Evaluator;
+
+/// Half the step \[mm\] of a difference along σ. A turn of the gap that is found with it is off by less than 1e-6 mm, and its depth by
+/// less than rounding.
+const HALF_STEP: f64 = 1e-5;
+
+/// The gap whose level δ bounds the patch.
+#[derive(Debug)]
+pub(super) enum Level<'a> {
+    /// s(ξ, η).
+    Plane(Evaluator<'a>),
+    /// t(σ, η) + δ (1 − cos α), which is δ where t is δ cos α.
+    Rail {
+        /// t.
+        gap: NormalGap<'a>,
+        /// δ \[mm\].
+        approach: f64,
+        /// The line of the last point.
+        line: Option<Line>,
+    },
+}
+
+impl<'a> Level<'a> {
+    /// Makes that over the tangent plane.
+    pub(super) fn plane(placement: &'a Placement) -> Self {
+        Self::Plane(Evaluator::new(placement))
+    }
+
+    /// Makes that over the rail's surface, for an approach δ \[mm\].
+    pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
+        Self::Rail { gap: NormalGap::new(placement), approach, line: None }
+    }
+
+    /// Returns the normal gap over the rail's surface; `None` over the tangent plane.
+    pub(super) fn normal_gap(&self) -> Option<&NormalGap<'a>> {
+        match self {
+            Self::Plane(_) => None,
+            Self::Rail { gap, .. } => Some(gap),
+        }
+    }
+
+    /// Returns the gap \[mm\]; NaN where a body has no surface.
+    pub(super) fn gap(&mut self, xi: f64, eta: f64) -> f64 {
+        match self {
+            Self::Plane(evaluator) => evaluator.separation(xi, eta),
+            Self::Rail { gap, approach, line } => on_line(gap, line, xi).map_or(f64::NAN, |line| {
+                // 1 − cos α without a difference of nearly equal numbers.
+                let RailPoint { cos, sin, .. } = line.rail;
+                gap.gap_on(line, eta) + *approach * (sin * sin / (1.0 + cos))
+            }),
+        }
+    }
+
+    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap. Over the rail's surface ∂/∂σ is a difference over 2e-5 mm, which is right where the gap turns but
+    /// not to all digits.
+    pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        match self {
+            Self::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1,
+            Self::Rail { gap, .. } => {
+                let [low, high] = gap.rail().reach().unwrap_or([f64::NAN; 2]);
+                let ends = [(xi - HALF_STEP).max(low), (xi + HALF_STEP).min(high)];
+                let [a, b] = ends.map(|xi| self.gap(xi, eta));
+                [(b - a) / (ends[1] - ends[0]), self.slope(xi, eta)]
+            }
+        }
+    }
+
+    /// Returns ∂/∂η of the gap.
+    pub(super) fn slope(&mut self, xi: f64, eta: f64) -> f64 {
+        match self {
+            Self::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1[1],
+            Self::Rail { gap, line, .. } => {
+                on_line(gap, line, xi).map_or(f64::NAN, |line| gap.slope_on(line, eta))
+            }
+        }
+    }
+}
+
+/// Takes the last line if it is that of σ.
+fn on_line<'l>(gap: &NormalGap<'_>, line: &'l mut Option<Line>, sigma: f64) -> Option<&'l mut Line> {
+    if line.as_ref().is_none_or(|line| line.rail.sigma != sigma) {
+        *line = gap.line(sigma);
+    }
+    line.as_mut()
+}
