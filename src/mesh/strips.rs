@@ -167,14 +167,14 @@ impl StripBuilder<'_> {
         for (band, shares) in bands.iter().zip(&shares) {
             let edges = strip_edges(band, strips as f64 / whole);
             let slices = band.rows(&edges);
-            let mut before: Vec<usize> = Vec::new();
+            let (mut before, mut row): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
             for (i, &[xi, low, high]) in slices.iter().enumerate() {
-                let row = match meetings.iter_mut().find(|meeting| meeting.xi == xi) {
+                match meetings.iter_mut().find(|meeting| meeting.xi == xi) {
                     Some(meeting) if xi == band.xi[0] || xi == band.xi[1] => {
-                        meeting.row(&mut self.mesh.points, self.placement, band, shares)
+                        row = meeting.row(&mut self.mesh.points, self.placement, band, shares);
                     }
-                    _ => self.row(shares, xi, [low, high]),
-                };
+                    _ => self.row(shares, xi, [low, high], &mut row),
+                }
                 if i > 0 {
                     self.strip(
                         band,
@@ -184,7 +184,7 @@ impl StripBuilder<'_> {
                         [&before, &row],
                     );
                 }
-                before = row;
+                std::mem::swap(&mut before, &mut row);
             }
             first_strip += edges.len() - 1;
         }
@@ -221,22 +221,25 @@ impl StripBuilder<'_> {
         }
     }
 
-    /// Returns the indices of the points of one strip edge between two η \[mm\], ascending in η. They are equal if the edge has no width.
-    fn row(&mut self, shares: &[f64], xi: f64, eta: [f64; 2]) -> Vec<usize> {
-        let profile = self.placement.rail().section.height(xi);
-        let on_roller = self.placement.under().is_some() || self.placement.lofted_rail().is_some();
-        let mut lifted = |eta: f64| {
-            let zeta = if on_roller { self.evaluator.lower_height(xi, eta) } else { profile };
-            Point3::new(xi, eta, zeta)
-        };
+    /// Adds the points of one strip edge between two η \[mm\], ascending in η, and gives their indices. They are equal if the edge has no
+    /// width.
+    fn row(&mut self, shares: &[f64], xi: f64, [low, high]: [f64; 2], row: &mut Vec<usize>) {
         let points = &mut self.mesh.points;
         let first = points.len();
-        if eta[0] >= eta[1] {
-            points.push(lifted(eta[0]));
-            return vec![first; shares.len()];
+        let profile = self.placement.rail().section.height(xi);
+        let is_swept = self.placement.under().is_none() && self.placement.lofted_rail().is_none();
+        row.clear();
+        if low >= high {
+            points.push(Point3::new(xi, low, profile));
+            row.resize(shares.len(), first);
+        } else {
+            points.extend(shares.iter().map(|&share| Point3::new(xi, between([low, high], share), profile)));
+            row.extend(first..points.len());
         }
-        points.extend(shares.iter().map(|&share| lifted(between(eta, share))));
-        (first..first + shares.len()).collect()
+        if !is_swept {
+            let evaluator = &mut self.evaluator;
+            points[first..].iter_mut().for_each(|at| at.z = evaluator.lower_height(xi, at.y));
+        }
     }
 
     /// Computes the moments of a strip's width, over the pieces between all corners of the boundary, even those without a

@@ -68,12 +68,6 @@ fn bad_scenes_name_the_file_and_the_key() {
             wheel.clone(),
             "rail.slcs: along: found -1 mm; expected a place from 0 to 200 mm;",
         ),
-        // A wheel without one varies, over which there are no creepages.
-        (
-            rail.clone(),
-            WHEEL.replace("\nangle = ", ""),
-            "motion: found a motion with a wheel that varies around its axle;",
-        ),
         (rail.clone(), rail.clone(), "found slices of a rail; expected slices of a wheel, in a file .slcw;"),
         (
             wheel.clone(),
