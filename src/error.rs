@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::iter::ParallelIterator;
+
 /// What kind of thing went wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -41,6 +43,15 @@ pub struct Error {
 
 /// The result type of every function of this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// Gathers what threads make. Of several errors it is the first in order, whatever thread comes upon one first.
+///
+/// # Errors
+/// The first error among them.
+pub fn in_order<T: Send>(made: impl ParallelIterator<Item = Result<T>>) -> Result<Vec<T>> {
+    let made: Vec<Result<T>> = made.collect();
+    made.into_iter().collect()
+}
 
 impl PartialEq for Error {
     fn eq(&self, other: &Self) -> bool {

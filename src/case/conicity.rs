@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::conicity_noise::{Noise, Uncertainty, uncertainty};
 use super::input::{Case, Place};
-use crate::error::{Error, ErrorKind, Result, finite};
+use crate::error::{Error, ErrorKind, Result, finite, in_order};
 use crate::placement::Pair;
 use crate::profile::trace;
 use crate::search::{
@@ -383,7 +383,7 @@ fn map(system: &WheelsetOnTrack, options: &ConicityOptions, roll: Roll, gauge: f
         let table = Conicity::new(&system.widened(change)?, options.amplitude, roll)?;
         Ok(amplitude_mm.iter().map(|y| table.at(*y).map_or(f64::NAN, |found| found.conicity)).collect())
     };
-    let conicity = options.gauges.par_iter().map(row).collect::<Result<Vec<Vec<f64>>>>()?;
+    let conicity = in_order(options.gauges.par_iter().map(row))?;
     let gauge_mm = options.gauges.iter().map(|change| gauge + change).collect();
     Ok(ConicityMap { gauge_change_mm: options.gauges.clone(), gauge_mm, amplitude_mm, conicity })
 }

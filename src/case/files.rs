@@ -14,7 +14,7 @@ use super::site::cut_by;
 use super::summary::{Meshes, summary};
 use super::unrolled::Unrolled;
 use super::view::view;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_order};
 use crate::export::{
     ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Interval,
     Loop, LowerSurface, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
@@ -44,8 +44,7 @@ pub fn write(run: &Run, folder: &Folder, png: Option<Rasterise>, tell: Tell<'_>)
         };
         write_part(run, part, folder, png, &tell)
     };
-    let parts: Vec<Result<WrittenPart>> = run.parts.par_iter().enumerate().map(one).collect();
-    parts.into_iter().collect()
+    in_order(run.parts.par_iter().enumerate().map(one))
 }
 
 /// What was written of one part.

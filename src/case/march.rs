@@ -6,7 +6,7 @@ use super::input::{Case, Profiles};
 use super::places::rows_under_load;
 use super::run::end_reached;
 use super::wheel::Region;
-use crate::error::Result;
+use crate::error::{Result, in_order};
 use crate::search::{Event, March, Stop, SweepRow};
 
 /// What a march goes along: the column of its places, and the axis of its picture.
@@ -109,9 +109,7 @@ impl MarchCase {
         let portion = if self.loaded.is_some() { PORTION } else { usize::MAX };
         let sink = |stops: &[Stop], events: &[Event]| {
             for some in stops.chunks(portion) {
-                let found: Vec<Result<MarchStop>> =
-                    some.par_iter().map(|stop| self.stop(course, stop)).collect();
-                if !sink(&found.into_iter().collect::<Result<Vec<_>>>()?, &[])? {
+                if !sink(&in_order(some.par_iter().map(|stop| self.stop(course, stop)))?, &[])? {
                     return Ok(false);
                 }
             }

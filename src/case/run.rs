@@ -12,7 +12,7 @@ use super::landmarks::SideLandmarks;
 use super::pressure::PartPressure;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
-use crate::error::Result;
+use crate::error::{Result, in_order};
 use crate::patch::Patch;
 use crate::placement::{Creepages, Placement};
 use crate::search::TrackSide;
@@ -84,9 +84,7 @@ impl Run {
             let warnings = warnings_of(&site, &analysis, (&case.landmarks, others[k]));
             Ok(Part { site, analysis, warnings })
         };
-        // All before any error, so that it is the first part's, whichever thread is faster.
-        let parts: Vec<Result<Part>> = sites.into_par_iter().enumerate().map(part).collect();
-        let parts = parts.into_iter().collect::<Result<_>>()?;
+        let parts = in_order(sites.into_par_iter().enumerate().map(part))?;
         Ok(Self { case, parts })
     }
 

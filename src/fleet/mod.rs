@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::case::{Place, Profiles};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_order};
 use crate::files::{KeptFolder, Names};
 use crate::placement::Pair;
 use crate::profile::standards;
@@ -222,7 +222,7 @@ impl Fleet {
             tell(done.fetch_add(1, Ordering::Relaxed) + 1, self.pairs()).map(|()| row)
         };
         let all: Vec<Number> = pairs.all().collect();
-        let rows = all.into_par_iter().map(row).collect::<Result<Vec<_>>>()?;
+        let rows = in_order(all.into_par_iter().map(row))?;
         parts.write(&name, &Part::new(hash, rows).bytes())?;
         Ok(if there.is_some() { Written::Changed } else { Written::New })
     }

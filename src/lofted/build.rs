@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::joining::Joining;
 use super::strip::{Interval, Strip};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::profile::{Mark, Profile, trace};
 
 /// Largest distance of the points across a slice \[mm\]: a spline through points of a 13 mm radius is then off by 20 nm.
@@ -67,9 +67,7 @@ impl Loft {
     /// that two successive slices have; a monotone surface that folds over between two slices; more points than memory should hold.
     pub fn new(slices: &[Slice], joining: Joining) -> Result<Self> {
         check(slices)?;
-        // The first error in order, whatever thread would come upon one first.
-        let divided: Vec<Result<_>> = slices.par_iter().map(divide).collect();
-        let divided = divided.into_iter().collect::<Result<Vec<_>>>()?;
+        let divided = in_order(slices.par_iter().map(divide))?;
         let (runs, mut warnings) = runs(slices, &divided);
         let (mut strips, mut total) = (Vec::new(), 0);
         for (part, run) in runs {

@@ -10,7 +10,7 @@ use super::profiles::{
     Resolved, Sources, is_chain_file, profile_from_file, reject_measured_keys, turned_and_shifted, wheel_of,
     wheel_radius,
 };
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_order};
 use crate::files::read_bytes;
 use crate::lofted::{Flat, Loft, LoftedWheel, Slice};
 use crate::measured::{self, Measured, SliceList, listed_body};
@@ -122,10 +122,7 @@ fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<Slice>, Ve
         let curve = Curve::read(data, &folder.join(&slice.file), side)?;
         Ok(Curve { profile: turned_and_shifted(data, curve.profile)?, ..curve })
     });
-    // The first error in order, whatever thread would come upon one first.
-    let curves: Vec<Result<Curve>> = curves.collect();
-    let curves: Result<Vec<Curve>> = curves.into_iter().collect();
-    let curves = curves.map_err(|error| error.within(&place))?;
+    let curves = in_order(curves).map_err(|error| error.within(&place))?;
     if let Some(k) = (1..curves.len()).find(|&k| curves[k].scale != curves[0].scale) {
         let names = [0, k].map(|k| list.slices[k].file.as_str());
         let found =

@@ -6,7 +6,7 @@ use super::position::Position;
 use super::sweep::{Sweep, SweepRow, TrackSide};
 use super::touch::{Contact, ONE_CONTACT, Selection};
 use super::wheelset::WheelsetOnTrack;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_order};
 
 /// Places of one block: enough work for all threads, and little memory.
 const BLOCK: usize = 1024;
@@ -195,7 +195,7 @@ impl<'a> Way<'a> {
         let mut clearance = [None; 2];
         for block in places.chunks(BLOCK) {
             let stops = block.par_iter().map_init(|| self.begin(), |sweep, &at| self.stop(sweep, at));
-            let stops = stops.collect::<Result<Vec<_>>>()?;
+            let stops = in_order(stops)?;
             let before = last.iter().chain(&stops);
             let pairs: Vec<(&Stop, &Stop)> =
                 before.zip(stops.iter().skip(usize::from(last.is_none()))).collect();
@@ -206,7 +206,7 @@ impl<'a> Way<'a> {
                     self.between(sweep, a, b, &mut events).map(|()| events)
                 },
             );
-            let mut found: Vec<Event> = between.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+            let mut found: Vec<Event> = in_order(between)?.into_iter().flatten().collect();
             for (k, side) in SIDES.into_iter().enumerate() {
                 found.extend(self.clearances(&stops, side, &mut clearance[k]));
             }

@@ -6,7 +6,7 @@ use super::position::{Position, Roll};
 use super::sweep::{Conicity, Sweep, SweepRow};
 use super::touch::Selection;
 use super::wheelset::WheelsetOnTrack;
-use crate::error::Result;
+use crate::error::{Result, in_order};
 
 /// Positions of one block: enough work for all threads, and little memory.
 const BLOCK: usize = 8192;
@@ -46,7 +46,7 @@ impl ParallelSweep<'_> {
         let mut done = 0;
         for block in self.positions.chunks(BLOCK) {
             let chunk = |(k, chunk)| self.chunk(done + k * CHUNK, chunk, &make);
-            let chunks = block.par_chunks(CHUNK).enumerate().map(chunk).collect::<Result<Vec<_>>>()?;
+            let chunks = in_order(block.par_chunks(CHUNK).enumerate().map(chunk))?;
             done += block.len();
             if !sink(done, chunks)? {
                 break;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::asked::Asked;
 use super::cell::{BREAK, Beginning};
 use super::state::{Sampler, State};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::search::WheelsetOnTrack;
 
 /// Distance of the displacements \[mm\] between which breaks are looked for.
@@ -64,7 +64,7 @@ pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, [from, to]:
         Ok((begin, end, found))
     };
     let firsts: Vec<usize> = (0..steps).step_by(CHUNK).collect();
-    let chunks = firsts.into_par_iter().map(chunk).collect::<Result<Vec<_>>>()?;
+    let chunks = in_order(firsts.into_par_iter().map(chunk))?;
     let (mut begin, mut end, mut breaks) = (None, None, Vec::new());
     for (first, last, found) in chunks {
         begin = begin.or(first);

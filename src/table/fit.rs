@@ -8,7 +8,7 @@ use super::cell::{BREAK, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 use super::curve::{Curve, POWERS, YAW_POWERS, node, share};
 use super::quantity::{MOST, Needs, Quantity, Values};
 use super::state::{Sampler, State};
-use crate::error::Result;
+use crate::error::{Result, in_order};
 use crate::search::WheelsetOnTrack;
 
 /// Stated error over the largest difference in the check of a cell. The check is made where the polynomial through the nodes is
@@ -89,7 +89,7 @@ pub(super) fn fit(
         let unseen = width > SHORTEST && add_unseen(&mut sampler, &samples, row)?;
         Ok((samples, unseen))
     };
-    let found: Vec<(Vec<State>, bool)> = rows.par_iter_mut().map(along).collect::<Result<_>>()?;
+    let found = in_order(rows.par_iter_mut().map(along))?;
     if found.iter().any(|(_, unseen)| *unseen) {
         return Ok(Fit::Unseen);
     }

@@ -15,7 +15,7 @@ use super::curve::{Curve, node};
 use super::fit::{Fit, Fitted, fit};
 use super::quantity::Quantity;
 use super::state::{Sampler, SideTopology, State};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::search::WheelsetOnTrack;
 
 /// Rows of a region: at the nodes, and between each two of them.
@@ -122,7 +122,7 @@ impl<'a> Divider<'a> {
             k if k == ROWS - 1 => to,
             k => from + (to - from) * (0.5 * (1.0 + node(k, ROWS))),
         };
-        (0..ROWS).into_par_iter().map(|k| known(k).map_or_else(|| at(yaw(k)), Ok)).collect()
+        in_order((0..ROWS).into_par_iter().map(|k| known(k).map_or_else(|| at(yaw(k)), Ok)))
     }
 
     fn divide(&self, mut region: Region) -> Result<Branch> {
@@ -171,7 +171,7 @@ impl<'a> Divider<'a> {
         }
         let (breaks, curves): (Vec<_>, Vec<_>) = cuts.into_iter().unzip();
         let parts = region.cut(&breaks, &curves);
-        let parts = parts.into_par_iter().map(|part| self.divide(part)).collect::<Result<_>>()?;
+        let parts = in_order(parts.into_par_iter().map(|part| self.divide(part)))?;
         Ok(Branch::Along(parts, curves))
     }
 
@@ -194,7 +194,7 @@ impl<'a> Divider<'a> {
                 let state = Sampler::new(self.system, self.asked, row.yaw).at(y, 0.0)?;
                 Ok([state.clone(), state])
             };
-            let breaks = region.rows.par_iter().map(search).collect::<Result<_>>()?;
+            let breaks = in_order(region.rows.par_iter().map(search))?;
             Ok((breaks, Curve::constant(y, region.yaw(), Beginning::Smooth)))
         };
         at.filter(|y| *y > from + BESIDE && *y < to - BESIDE).map(cut).collect()

@@ -47,6 +47,7 @@ mod rollers;
 mod slices;
 mod steps;
 mod strips;
+mod sweep_order;
 mod tables;
 mod triangles;
 mod turned_wheels;

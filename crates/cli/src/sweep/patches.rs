@@ -11,7 +11,7 @@ use super::super::progress::Progress;
 use super::table::SweepTable;
 use crate::answer::{complain, counted};
 use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
-use wheelrail::error::{Error, ErrorKind, Result};
+use wheelrail::error::{Error, ErrorKind, Result, in_order};
 use wheelrail::export::collection_pvd;
 use wheelrail::files::Folder;
 use wheelrail::scene::{self, Scene};
@@ -52,7 +52,7 @@ pub(super) fn write(
         progress.share(format!("patches of {done} of {all} positions"), done as f64 / all as f64);
         Ok(written)
     };
-    let written = positions.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
+    let written = in_order(positions.par_iter().enumerate().map(one))?;
     folder.write("surface.pvd", collection(&written, every_part).as_bytes())?;
     folder.write("wheelset.pvd", collection(&written, wheelset).as_bytes())?;
     folder.write("summary.json", &summary(scene, &case.echo().hash, &written))?;
