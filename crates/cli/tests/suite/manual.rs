@@ -49,19 +49,11 @@ fn page_folder(page: &Path) -> PathBuf {
     here
 }
 
-/// Whether a word of a command stands for another: `SCENE.toml`, `DIR`, `WHEELS…`.
-#[cfg(unix)]
-fn stands_for_another(word: &str) -> bool {
-    let stem = word.trim_end_matches('…').split('.').next().unwrap_or_default();
-    stem.len() >= 3 && stem.chars().all(|c| c.is_ascii_uppercase())
-}
-
-/// The command line that a line of a page gives; `None` for one of other programs, and for one with words that stand for others.
+/// The command line that a line of a page gives; `None` for one of other programs.
 #[cfg(unix)]
 fn command(line: &str) -> Option<String> {
     let line = line.replace("cargo run --release -- ", "wheelrail ");
-    let own = line.starts_with("wheelrail ") && !line.split_whitespace().any(stands_for_another);
-    own.then_some(line)
+    line.starts_with("wheelrail ").then_some(line)
 }
 
 #[test]
