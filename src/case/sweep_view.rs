@@ -4,7 +4,7 @@ use super::columns::Columns;
 use super::curves::curves;
 use super::input::{Case, Profiles};
 use super::polylines::{page_cut, pairs};
-use super::view::{BODIES, about, with_minus};
+use super::view::{about_bodies, with_minus};
 use crate::error::Result;
 use crate::export::{
     CurvesPanel, CurvesPicture, PageCut, PageEvents, PlottedCurve, SEPARATOR, SweepCurve, SweepPage,
@@ -110,7 +110,7 @@ fn panel(panel: CurvesPanel) -> SweepPanel {
 impl Shown<'_> {
     /// Says what stands at all positions, and then what the picture says.
     fn about(&self, picture: &str) -> String {
-        let mut said = about(self.scene, &BODIES);
+        let mut said = about_bodies(self.scene);
         let yaws = self.columns.quantity("yaw_rad").unwrap_or_default();
         if let [yaw, others @ ..] = yaws
             && others.iter().all(|other| other == yaw)

@@ -57,7 +57,7 @@ pub(super) fn view(run: &Run) -> ViewPage {
 type Said = (&'static str, &'static str, &'static str);
 
 /// Profiles, inclination, radius and gauge.
-pub(super) const BODIES: [Said; 18] = [
+const BODIES: [Said; 18] = [
     ("rail ", "/rail/profile", ""),
     ("rail ", "/rail/file", ""),
     ("rail ", "/rail/segments", ""),
@@ -86,8 +86,13 @@ const POSITION: [Said; 4] = [
     ("yaw ", "/contact/yaw", " rad"),
 ];
 
+/// Names profiles, inclination, radius and gauge of a scene, as far as it gives them.
+pub(crate) fn about_bodies(scene: &serde_json::Value) -> String {
+    about(scene, &BODIES)
+}
+
 /// Puts parts of a scene into words, as far as it gives them.
-pub(super) fn about(scene: &serde_json::Value, parts: &[Said]) -> String {
+fn about(scene: &serde_json::Value, parts: &[Said]) -> String {
     let said = |(word, key, unit): &Said| {
         let value = match scene.pointer(key)? {
             serde_json::Value::Null => return None,
