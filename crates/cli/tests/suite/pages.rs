@@ -200,7 +200,10 @@ fn pages_are_used_by_keyboard_at_three_widths_light_and_dark() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").canonicalize().unwrap();
     let example = |name: &str| root.join(name).display().to_string();
     let rail = include_str!("../../../../examples/scenes/flange_root.toml");
-    let runs = [("keys_rail", rail.replace("load", "approach = 0.08 #")), ("keys_pair", wheelset("2.0", ""))];
+    let runs = [
+        ("keys_rail", rail.replace("load = 60000.0", "approach = 0.08")),
+        ("keys_pair", wheelset("2.0", "approach = 0.08")),
+    ];
     let mut pages: Vec<PathBuf> =
         runs.iter().map(|(name, scene)| run(name, scene, 0).join("view.html")).collect();
     let [scene, crossing, fleet, wheels, prw] = [
