@@ -6,7 +6,6 @@
 // each is for; nothing is wider than the screen; pictures and bars of colours have names. A failed check ends with exit code 1.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { basename } from "node:path";
 import { chromium } from "playwright-core";
 import { FLAGS, open, settled } from "./pages.mjs";
 
@@ -138,32 +137,34 @@ async function fits(page) {
     assert.equal(unsaved, 0, "pictures without a button that saves them");
 }
 
+/** Tries a page at all widths, light and dark. */
+async function tried(browser, file) {
+    for (const width of WIDTHS) {
+        for (const colorScheme of ["light", "dark"]) {
+            const context = await browser.newContext({ viewport: { width, height: 900 }, colorScheme, offline: true });
+            const page = await open(context, file);
+            try {
+                assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
+                await fits(page);
+                const controls = await page.evaluate(numbered, CONTROLS);
+                await order(page, controls);
+                // What a key does depends on no colour: every width and both themes are tried, not all of them together.
+                if ((width === WIDTHS[1]) === (colorScheme === "dark")) await answers(page, controls);
+                assert.deepEqual(page.faults, []);
+                if (colorScheme === "light") console.log(`${file}, ${width} px: ${controls.length} controls`);
+            } catch (error) {
+                throw new Error(`${file}, ${width} px, ${colorScheme}`, { cause: error });
+            }
+            await context.close();
+        }
+    }
+}
+
 const [executablePath, ...files] = process.argv.slice(2);
 const browser = await chromium.launch({ executablePath, args: FLAGS });
 try {
-    for (const file of files) {
-        for (const width of WIDTHS) {
-            for (const colorScheme of ["light", "dark"]) {
-                const context = await browser.newContext({ viewport: { width, height: 900 }, colorScheme, offline: true });
-                const page = await open(context, file);
-                const at = `${basename(file)}, ${width} px, ${colorScheme}`;
-                try {
-                    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-                    await fits(page);
-                    const controls = await page.evaluate(numbered, CONTROLS);
-                    await order(page, controls);
-                    // What a key does depends on no colour: every width and both themes are tried, not all of them together.
-                    if ((width === WIDTHS[1]) === (colorScheme === "dark")) await answers(page, controls);
-                    assert.deepEqual(page.faults, []);
-                    if (colorScheme === "light") console.log(`${at}: ${controls.length} controls`);
-                } catch (error) {
-                    error.message = `${at}: ${error.message}`;
-                    throw error;
-                }
-                await context.close();
-            }
-        }
-    }
+    // Pages wait for their next frame most of the time: they are tried together.
+    await Promise.all(files.map((file) => tried(browser, file)));
 } finally {
     await browser.close();
 }
