@@ -6,9 +6,13 @@ export const FLAGS = [
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ];
 
+/** How long an action may take on a machine that has much else to do, ms: what never comes ends a test, what is slow does not. */
+const PATIENCE = 300_000;
+
 /** Opens a page; whatever it says or asks for is a failure. */
 export async function open(context, file) {
     const page = await context.newPage();
+    page.setDefaultTimeout(PATIENCE);
     page.faults = [];
     page.on("console", (message) => page.faults.push(`console: ${message.text()}`));
     page.on("pageerror", (error) => page.faults.push(error.stack));
