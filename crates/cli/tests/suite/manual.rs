@@ -258,7 +258,7 @@ fn the_fleet_of_the_gallery_is_of_today() {
         text += &format!("{:<16}{}\n", row[0], cells.collect::<String>());
     }
     if anew() {
-        photograph(&here.join("fleet/fleet.html"), "scenes/fleet.png", "1280,886");
+        photograph(&here.join("fleet/fleet.html"), "scenes/fleet.png", "1280,906");
         let scene = scene.replace("fleet/fleet.toml", "scenes/60e1_s1002.toml");
         wheelrail(&here, &["run", &scene, "--out", "run"]);
         photograph(&here.join("run/view.html"), "view_html.png", "1280,936");
