@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::input::{Case, Profiles};
+use super::input::{Case, Echo, Profiles};
 use super::places::rows_under_load;
 use super::run::end_reached;
 use super::wheel::Region;
@@ -43,6 +43,8 @@ pub struct MarchCase {
     pub loaded: Option<Case>,
     /// What the lists leave undefined, and what is doubtful.
     pub warnings: Vec<String>,
+    /// The scene, as pages name it.
+    pub echo: Echo,
 }
 
 /// A place of contact, with what its region carries.

@@ -117,6 +117,7 @@ impl DrawnMarch<'_> {
         let stands = |at: f64| if self.course == AROUND { [0.0, at] } else { [at, pitch] };
         let shown = Shown {
             profiles: &self.case.profiles,
+            scene: &self.case.echo.scene,
             system: &self.case.march.system,
             columns: &self.columns.columns,
             positions: self.places,

@@ -85,3 +85,4 @@ pub use site::{Site, sites};
 pub use sweep_view::sweep_page;
 pub use table::{TABLE_FOLDER, table, write_table};
 pub use tally::Tally;
+pub(crate) use view::about_bodies;

@@ -4,10 +4,11 @@ use super::columns::Columns;
 use super::curves::curves;
 use super::input::{Case, Profiles};
 use super::polylines::{page_cut, pairs};
+use super::view::{about_bodies, with_minus};
 use crate::error::Result;
 use crate::export::{
-    CurvesPanel, CurvesPicture, PageCut, PageEvents, PlottedCurve, SweepCurve, SweepPage, SweepPanel,
-    SweepSide,
+    CurvesPanel, CurvesPicture, PageCut, PageEvents, PlottedCurve, SEPARATOR, SweepCurve, SweepPage,
+    SweepPanel, SweepSide,
 };
 use crate::search::{Cut, Position, Roll, TrackSide, WheelsetOnTrack};
 
@@ -20,6 +21,8 @@ const SECTION_OF_ROLLER: &str = "The section is that through the axles: under ya
 /// A wheelset at many positions, as pages show it.
 pub(super) struct Shown<'a> {
     pub profiles: &'a Profiles,
+    /// The scene as it was read.
+    pub scene: &'a serde_json::Value,
     pub system: &'a WheelsetOnTrack,
     /// The contacts; there may be none at a position.
     pub columns: &'a Columns,
@@ -34,7 +37,7 @@ pub(super) struct Shown<'a> {
 }
 
 /// Makes the page of a sweep from its columns, over the lateral displacements \[mm\] of all its positions; these have to ascend,
-/// and `columns` may lack those without contact. `about` stands below the names of the profiles.
+/// and `columns` may lack those without contact. `about` stands below the names of the profiles, after what the scene says of them.
 ///
 /// # Errors
 /// Lateral displacements that do not ascend.
@@ -59,6 +62,7 @@ pub(super) fn swept<'a>(
 ) -> Shown<'a> {
     Shown {
         profiles: &case.profiles,
+        scene: &case.echo.scene,
         system,
         columns,
         positions,
@@ -77,7 +81,7 @@ pub(super) fn page_of(shown: &Shown<'_>, picture: CurvesPicture) -> SweepPage {
     );
     SweepPage {
         title: picture.title,
-        about: picture.about,
+        about: shown.about(&picture.about),
         version: env!("CARGO_PKG_VERSION").into(),
         abscissa: picture.abscissa,
         positions: shown.positions.to_vec(),
@@ -104,6 +108,18 @@ fn panel(panel: CurvesPanel) -> SweepPanel {
 }
 
 impl Shown<'_> {
+    /// Says what stands at all positions, and then what the picture says.
+    fn about(&self, picture: &str) -> String {
+        let mut said = about_bodies(self.scene);
+        let yaws = self.columns.quantity("yaw_rad").unwrap_or_default();
+        if let [yaw, others @ ..] = yaws
+            && others.iter().all(|other| other == yaw)
+        {
+            said += &with_minus(&format!(", yaw {yaw} rad"));
+        }
+        [said.trim_start_matches(", "), picture].join(SEPARATOR)
+    }
+
     /// Gives where the wheel of a side is at every position, what varies there, and the contacts.
     fn side(&self, right: bool) -> SweepSide {
         let on_track = if right { self.system.right() } else { self.system.left() };

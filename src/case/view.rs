@@ -44,7 +44,7 @@ pub(super) fn view(run: &Run) -> ViewPage {
     let n = ((ALL_POINTS / gaps as f64).sqrt() as usize).min(POINTS);
     ViewPage {
         title: run.case.echo.title.clone(),
-        about: about(&run.case.echo.scene),
+        about: about(&run.case.echo.scene, &[BODIES.as_slice(), &POSITION].concat()),
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: run.case.echo.hash.clone(),
         pairs: pairs(&run.case.profiles),
@@ -53,25 +53,53 @@ pub(super) fn view(run: &Run) -> ViewPage {
     }
 }
 
-/// Names profiles, inclination, radius, gauge and position of a scene, as far as it gives them.
-fn about(scene: &serde_json::Value) -> String {
-    let parts = [
-        ("rail ", "/rail/profile", ""),
-        ("rail ", "/rail/file", ""),
-        ("rotated ", "/rail/rotate", ""),
-        ("on a roller of ", "/roller/radius", " mm"),
-        ("wheel ", "/wheel/profile", ""),
-        ("wheel ", "/wheel/file", ""),
-        ("R ", "/wheel/radius", " mm"),
-        ("gauge ", "/track/gauge", " mm"),
-        ("lateral ", "/wheelset/lateral", " mm"),
-        ("offset ", "/contact/offset", " mm"),
-        ("yaw ", "/wheelset/yaw", " rad"),
-        ("yaw ", "/contact/yaw", " rad"),
-    ];
-    let said = |(word, key, unit): &(&str, &str, &str)| {
-        let value = scene.pointer(key).filter(|value| !value.is_null())?;
-        let value = value.as_str().map_or_else(|| value.to_string(), String::from);
+/// What a page says of a scene: word, key and unit of a value.
+type Said = (&'static str, &'static str, &'static str);
+
+/// Profiles, inclination, radius and gauge.
+const BODIES: [Said; 18] = [
+    ("rail ", "/rail/profile", ""),
+    ("rail ", "/rail/file", ""),
+    ("rail ", "/rail/segments", ""),
+    ("rotated ", "/rail/rotate", ""),
+    ("on a roller of ", "/roller/radius", " mm"),
+    ("wheel ", "/wheel/profile", ""),
+    ("wheel ", "/wheel/file", ""),
+    ("wheel ", "/wheel/segments", ""),
+    ("R ", "/wheel/radius", " mm"),
+    ("left rail ", "/left/rail/profile", ""),
+    ("left rail ", "/left/rail/file", ""),
+    ("left wheel ", "/left/wheel/profile", ""),
+    ("left wheel ", "/left/wheel/file", ""),
+    ("right rail ", "/right/rail/profile", ""),
+    ("right rail ", "/right/rail/file", ""),
+    ("right wheel ", "/right/wheel/profile", ""),
+    ("right wheel ", "/right/wheel/file", ""),
+    ("gauge ", "/track/gauge", " mm"),
+];
+
+/// The one position of a run.
+const POSITION: [Said; 4] = [
+    ("lateral ", "/wheelset/lateral", " mm"),
+    ("offset ", "/contact/offset", " mm"),
+    ("yaw ", "/wheelset/yaw", " rad"),
+    ("yaw ", "/contact/yaw", " rad"),
+];
+
+/// Names profiles, inclination, radius and gauge of a scene, as far as it gives them.
+pub(crate) fn about_bodies(scene: &serde_json::Value) -> String {
+    about(scene, &BODIES)
+}
+
+/// Puts parts of a scene into words, as far as it gives them.
+fn about(scene: &serde_json::Value, parts: &[Said]) -> String {
+    let said = |(word, key, unit): &Said| {
+        let value = match scene.pointer(key)? {
+            serde_json::Value::Null => return None,
+            serde_json::Value::String(text) => text.clone(),
+            serde_json::Value::Array(_) => "drawn in the scene".into(),
+            number => number.to_string(),
+        };
         Some(format!("{word}{}{unit}", with_minus(&value)))
     };
     parts.iter().filter_map(said).collect::<Vec<_>>().join(", ")
@@ -252,7 +280,7 @@ fn facts(part: &Part) -> Vec<[String; 2]> {
 }
 
 /// Gives numbers their true minus sign; hyphens of words stay.
-fn with_minus(text: &str) -> String {
+pub(super) fn with_minus(text: &str) -> String {
     let mut before = ' ';
     let mark = |(at, c): (usize, char)| {
         let number = c == '-' && text[at + 1..].starts_with(|next: char| next.is_ascii_digit());

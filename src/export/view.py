@@ -13,6 +13,7 @@ import json
 import math
 import os
 import sys
+import textwrap
 
 from paraview.simple import *
 
@@ -69,15 +70,16 @@ def cut(kind, source, origin, normal, **options):
     return made
 
 
-def body(source, begin, end_at, level):
-    """The skin of a body between two eta, and its section at the first, up or down to a level over C along the track's z."""
+def body(source, begin, end_at, upwards):
+    """The skin of a body between two eta, and its section at the first, from the profile to where the body ends, up or down."""
     across = [[columns[3][k] + eta * columns[1][k] for k in range(3)] for eta in (begin, end_at)]
     behind = cut(Clip, source, across[0], columns[1], ClipType="Plane", Invert=0)
     skin = cut(Clip, behind, across[1], columns[1], ClipType="Plane", Invert=1)
     line = cut(Slice, source, across[0], columns[1], SliceType="Plane")
-    upwards = math.copysign(1.0, level)
     thick = LinearExtrusion(Input=line, ScaleFactor=150.0, Vector=[0, 0, upwards])
-    end = [across[0][0], across[0][1], columns[3][2] + level]
+    line.UpdatePipeline()
+    ends = line.GetDataInformation().GetBounds()[4:]
+    end = [across[0][0], across[0][1], max(ends) if upwards > 0 else min(ends)]
     section = cut(Clip, thick, end, [0, 0, upwards], ClipType="Plane", Invert=1)
     return [(part, part is skin) for part in (skin, section) if points(part)]
 
@@ -137,15 +139,28 @@ back = [[*columns[k], -sum(a * b for a, b in zip(columns[k], columns[3]))] for k
 behind = (area or grid).GetDataInformation().GetBounds()[3] + 0.1 * size
 SKINS = {"rails.vtp": [0.70, 0.73, 0.76], "wheels.vtp": [0.45, 0.60, 0.80]}
 SECTIONS = {"rails.vtp": [0.56, 0.59, 0.62], "wheels.vtp": [0.30, 0.44, 0.63]}
-for name, begin, level in [("rails.vtp", bounds[2] - 0.3 * size, -90.0), ("wheels.vtp", behind, 26.0)]:
+for name, begin, upwards in [("rails.vtp", bounds[2] - 0.3 * size, -1), ("wheels.vtp", behind, 1)]:
     source = loaded(os.path.join(summary["wheelset_files"], name))
-    for part, is_skin in body(source, begin, behind + 60.0, level) if source else []:
+    for part, is_skin in body(source, begin, behind + 60.0, upwards) if source else []:
         display = shown(part, (SKINS if is_skin else SECTIONS)[name])
         display.UserTransform = [number for row in back for number in row]
         display.Ambient = 0.25 if is_skin else 0.5
 
+# The axes of the contact frame, at C. That of eta ends before the wheel, where its name is beside it.
+lift = 0.012 * size
+for name, tip, beside in [
+    ("xi", [0.62 * size, 0, lift], [0.08 * size, 0, 0]),
+    ("eta", [0, 0.95 * behind, lift], [-0.2 * size, -0.05 * behind, 0.12 * size]),
+    ("zeta", [0, 0, 0.62 * size], [0, 0, 0.06 * size]),
+]:
+    shown(Line(Point1=[0, 0, lift], Point2=tip), INK).LineWidth = 3
+    label = Show(Text(Text=name), view)
+    label.TextPropMode = "Billboard 3D Text"
+    label.BillboardPosition = [a + b for a, b in zip(tip, beside)]
+    label.Color, label.FontSize, label.Bold, label.Justification = INK, 20, 1, "Center"
+
 found = summary["found"]
-words = [summary["title"]]
+words = textwrap.wrap(summary["title"], 44)
 if found:
     side = "" if found["side"] == "single" else f"{found['side']} side, "
     words.append(f"{side}contact {found['contact']}")
@@ -190,7 +205,7 @@ across = [(1.0 if k == 0 else 0.0) - up[0] * up[k] for k in range(3)]
 along = [(1.0 if k == 1 else 0.0) - up[1] * up[k] for k in range(3)]
 direction = [-0.33 * across[k] - 0.82 * along[k] + 0.44 * up[k] for k in range(3)]
 middle = [(bounds[2 * k] + bounds[2 * k + 1]) / 2 for k in range(3)]
-view.CameraFocalPoint = [middle[k] + 0.4 * (bounds[2] - middle[1]) * along[k] + 4.0 * up[k] for k in range(3)]
+view.CameraFocalPoint = [middle[k] + 0.4 * (bounds[2] - middle[1]) * along[k] + 10.0 * up[k] for k in range(3)]
 view.CameraPosition = [c + max(7.0 * size, 195.0) * d for c, d in zip(view.CameraFocalPoint, direction)]
 view.CameraViewUp = up
 view.CenterOfRotation = view.CameraFocalPoint

@@ -7,11 +7,12 @@ use super::pair::{self, Row, numbers, wheelset};
 use super::part::{self, Part};
 use super::profiles::Shelf;
 use super::tally::{Tally, WorstPair, rails};
-use crate::case::{Case, Columns, DoubtSet, sweep_page};
+use crate::case::{Case, Columns, DoubtSet, about_bodies, sweep_page};
 use crate::error::{Error, Result};
 use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
 use crate::files::{KeptFolder, NewFile};
 use crate::profile::{Profile, Station, trace};
+use crate::scene;
 use crate::search::{Conicity, ONE_CONTACT, ParallelSweep, Position, Selection};
 
 /// Folder of the pages of the worst pairs.
@@ -130,6 +131,7 @@ fn page(fleet: &Listed, title: &str, tally: &Tally, rail: Option<PageProfile>) -
     ];
     let counted = |n: usize, thing: &str| format!("{n} {thing}{}", if n == 1 { "" } else { "s" });
     let about = [
+        about_bodies(&scene::echo(&fleet.scene, title).scene),
         [
             counted(fleet.wheelsets.len(), "wheelset"),
             counted(fleet.sections.len(), "rail section"),

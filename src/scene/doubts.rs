@@ -5,6 +5,7 @@ use super::profile_data::{ProfileData, Rotation};
 use super::side_data::SideData;
 use crate::case::{Doubt, Landmarks, Profiles, SideLandmarks, SideProfiles, usual};
 use crate::profile::Side;
+use crate::profile::standards::is_built_in;
 use crate::search::TrackSide;
 
 /// Lists what is doubtful in a scene, by key, with number and likely cause.
@@ -124,13 +125,13 @@ fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut V
         of_side.and_then(|side| side.rail.as_ref()).unwrap_or(&scene.rail),
         of_side.and_then(|side| side.wheel.as_ref()).unwrap_or(&scene.wheel),
     ];
-    let bodies = [("rail", own.pair.rail()), ("wheel", own.pair.wheel())];
-    for (k, (body, profile)) in bodies.into_iter().enumerate() {
+    let bodies = [(Side::Rail, "rail", own.pair.rail()), (Side::Wheel, "wheel", own.pair.wheel())];
+    for (k, (body, name, profile)) in bodies.into_iter().enumerate() {
         // The kinks of standards are theirs, those of measured profiles their files', and those of a section its slices'.
         let sections = own.varying.as_ref().filter(|_| data[k].file.is_some());
-        let section = sections.is_some_and(|varying| (varying.side() == Side::Rail) == (k == 0));
-        if !section && data[k].profile.is_none() && own.measured.both()[k].is_none() {
-            out.extend(usual::kinks(&own_place(side, body), profile));
+        let section = sections.is_some_and(|varying| varying.side() == body);
+        if !section && !is_built_in(profile, body) && own.measured.both()[k].is_none() {
+            out.extend(usual::kinks(&own_place(side, name), profile));
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::data::Scene;
 use super::doubts::doubts_of_keys;
 use super::profiles::{Given, Resolved, rail_of};
-use super::resolve::with_profiles;
+use super::resolve::{echo, with_profiles};
 use super::standing::{position, rails, wheels, within};
 use super::varying::{Wheel, both_vary, list_of, loft, wheel};
 use crate::case::{Case, MarchCase, Profiles, SideProfiles, usual};
@@ -59,7 +59,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
     let selection = Selection { within, apart: ONE_CONTACT };
     let march = March { system, position, selection, reach: lists.reach, pitch };
     let loaded = loaded(scene, &profiles)?;
-    Ok(MarchCase { march, profiles, loaded, warnings: lists.warnings })
+    Ok(MarchCase { march, profiles, loaded, warnings: lists.warnings, echo: echo(scene, "march") })
 }
 
 /// Makes the case of a wheelset under the loads of a scene; `None` without loads.

@@ -35,6 +35,7 @@ mod measured_scene;
 mod mesh;
 mod motion;
 mod over_slices;
+mod packages;
 mod parts;
 mod polynomial_patches;
 mod practice;

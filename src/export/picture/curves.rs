@@ -3,6 +3,9 @@
 use super::page::{BLUE, Colour, Page, Pen, RED, SMALL, polygon};
 use super::panel::{Panel, airy, range};
 
+/// Width of most letters, as a share of their size.
+const LETTER: f64 = 0.6;
+
 /// Colours and widths of the curves of a panel, in order. The first is wider, so that it is seen where the second covers it.
 const CURVES: [(Colour, f64); 2] = [(BLUE, 2.8), (RED, 1.4)];
 
@@ -142,14 +145,17 @@ impl CurvesPicture {
         let least = (1e-6 * low.abs().max(high.abs())).max(1e-9);
         let panel = Panel { place, u, v: airy([low, high], 0.06, least) };
         panel.zero_line(page);
-        for (k, (curve, (colour, width))) in quantity.curves.iter().zip(CURVES).enumerate() {
-            let pen = Pen::new(colour, width);
+        // The names end where the panel does, 12 apart.
+        let letters = quantity.curves.iter().map(|curve| curve.name.chars().count()).max().unwrap_or(0);
+        let stride = 44.0 + LETTER * SMALL.size * letters as f64;
+        let first = place[0] + place[2] + 12.0 - stride * quantity.curves.len() as f64;
+        for (k, (curve, (colour, wide))) in quantity.curves.iter().zip(CURVES).enumerate() {
+            let pen = Pen::new(colour, wide);
             let parted = curve.parted();
             page.lines(&panel.curve(&parted), pen);
             page.area(&dots(&panel, &parted), colour);
             if !curve.name.is_empty() {
-                let at = [place[0] + place[2] - 130.0 + 70.0 * k as f64, place[1] - 18.0];
-                page.legend(at, pen, &curve.name);
+                page.legend([first + stride * k as f64, place[1] - 18.0], pen, &curve.name);
             }
         }
         panel.axes(page, [&self.abscissa, &quantity.axis]);

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use super::drawing::{self, SegmentData};
-use super::{Arc, Half, Profile, Segment};
+use super::{Arc, Half, Profile, Segment, Side};
 use crate::error::{Error, Result};
 
 pub use en13715::{PATTERN as EN_13715_NAMES, SOURCE as EN_13715_SOURCE};
@@ -106,6 +106,12 @@ pub fn wheel(name: &str) -> Result<Profile> {
         return en13715::wheel(name, zones).unwrap_or_else(none);
     };
     drawing::drawn_profile(name, &format!("{}; origin: {}", data.source, data.origin), None, &data.segments)
+}
+
+/// Tells whether a profile is that of a standard, as it was built in, or rotated and shifted.
+pub fn is_built_in(profile: &Profile, side: Side) -> bool {
+    let built_in = if side == Side::Rail { rail(&profile.name) } else { wheel(&profile.name) };
+    built_in.is_ok_and(|own| own.source == profile.source)
 }
 
 /// Makes a rail head: the crown, then arcs smooth with each other down to the flank tangent, then the flank down to the

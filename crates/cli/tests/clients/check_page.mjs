@@ -11,8 +11,8 @@ import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
+import { FLAGS, open, settled } from "./pages.mjs";
 
 /** Largest distance of an exact boundary from the page's contour, in steps of the page's grid along each axis. */
 const WITHIN_STEPS = 0.05;
@@ -20,31 +20,6 @@ const WITHIN_STEPS = 0.05;
 const WITHIN_PICTURE = 0.02;
 /** Largest relative difference of the areas. */
 const WITHIN_AREA = 1e-3;
-
-const FLAGS = [
-    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-];
-
-/** Opens a page; whatever it says or asks for is a failure. */
-async function open(context, file) {
-    const page = await context.newPage();
-    page.faults = [];
-    page.on("console", (message) => page.faults.push(`console: ${message.text()}`));
-    page.on("pageerror", (error) => page.faults.push(error.stack));
-    page.on("request", (request) => {
-        if (request.url() !== pathToFileURL(file).href) page.faults.push(`request: ${request.url()}`);
-    });
-    await page.goto(pathToFileURL(file).href);
-    await page.waitForFunction(() => window.wheelrail !== undefined);
-    await settled(page);
-    return page;
-}
-
-/** Waits until what was asked for is drawn. */
-function settled(page) {
-    return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-}
 
 /** Numbers of different colours of all visible canvases. */
 function colours(page) {
@@ -122,7 +97,7 @@ async function withinOfPlane(page, contact, plane, steps) {
     return Math.max(WITHIN_STEPS, distance);
 }
 
-/** Keys move the cut and δ, every picture is reached by Tab and shows that it is. */
+/** Keys move the cut and δ. */
 async function keys(page) {
     const state = () => page.evaluate(() => [window.wheelrail.cut(0), window.wheelrail.delta(0), window.wheelrail.steps(0)]);
     const plan = page.locator("canvas.plan").first();
@@ -133,20 +108,6 @@ async function keys(page) {
     const [after, larger] = await state();
     assert.ok(Math.abs(after[0] - before[0] - steps[0]) < 1e-9 && Math.abs(after[1] - before[1] - 10 * steps[1]) < 1e-9);
     assert.ok(larger > delta, "+ raises δ");
-    // Tab goes on from where the mouse was pressed.
-    await page.locator("h1").click();
-    const reached = new Set();
-    for (let k = 0; k < 24; k++) {
-        await page.keyboard.press("Tab");
-        reached.add(await page.evaluate(() => {
-            const { activeElement: here } = document;
-            // Behind the last element the browser's own frame has its turn.
-            const shown = here === document.body || getComputedStyle(here).outlineStyle !== "none";
-            if (!shown) throw new Error(`no focus to be seen on ${here.tagName} ${here.className}`);
-            return here.tagName === "CANVAS" ? here.className : here.tagName;
-        }));
-    }
-    for (const wanted of ["INPUT", "space", "plan", "cut", "BUTTON"]) assert.ok(reached.has(wanted), `Tab reaches ${wanted}`);
 }
 
 /** The pointer reads s, and a drag turns the view in space. */
@@ -310,30 +271,6 @@ async function listed(page, file) {
     return `; ${expected.length} events`;
 }
 
-/** A telephone, a tablet and a desk, light and dark: nothing is wider than the screen, and no text is a narrow column. */
-async function widths(browser, file) {
-    for (const width of [390, 800, 1280]) {
-        for (const colorScheme of ["light", "dark"]) {
-            const context = await browser.newContext({ viewport: { width, height: 844 }, colorScheme, offline: true });
-            const page = await open(context, file);
-            assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
-            assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `no sideways scrolling at ${width}`);
-            const lines = await page.locator(".from").evaluate((text) => text.offsetHeight / parseFloat(getComputedStyle(text).lineHeight));
-            assert.ok(lines < 5.5, `the line below the title has ${lines} lines at ${width}`);
-            assert.deepEqual(page.faults, []);
-            await context.close();
-        }
-    }
-}
-
-/** The button of a picture saves it. */
-async function saved(page) {
-    const [download] = await Promise.all([page.waitForEvent("download"), page.locator("figure.plan .save, figure .save").first().click()]);
-    assert.match(download.suggestedFilename(), /\.png$/);
-    const bytes = readFileSync(await download.path());
-    assert.ok(bytes.length > 2000 && bytes.subarray(1, 4).toString() === "PNG", `${bytes.length} bytes`);
-}
-
 /** Side by side, the rows of contacts are at one height. */
 async function aligned(page) {
     const tops = await page.evaluate(() =>
@@ -356,19 +293,17 @@ try {
             await themes(page);
             assert.deepEqual(page.faults, [], name);
             await context.close();
-            await widths(browser, file);
             continue;
         }
         const found = await slider(page, others);
         const tried = number === 0 || (await page.evaluate(() => window.wheelrail.contacts.length)) > 2;
-        for (const attempt of tried ? [saved, keys, pointer, themes] : []) await attempt(page);
+        for (const attempt of tried ? [keys, pointer, themes] : []) await attempt(page);
         if (name === "wheelset") await aligned(page);
         const plane = others[0]?.plane;
         if (plane) await conformal(page, plane);
         assert.deepEqual(page.faults, [], name);
         await context.close();
         if (tried || plane) await telephone(browser, file);
-        if (number === 0 || plane) await widths(browser, file);
         console.log(`page ${name}: ${drawn.length} pictures; ${found.join("; ") || "no patch"}`);
     }
 } finally {

@@ -21,7 +21,7 @@ flock 9
 
 rm -rf "$node/source"
 cp -r "$pages/package.json" "$pages/package-lock.json" "$pages/build.mjs" "$pages/source" "$node"
-cp "$here/check_page.mjs" "$node"
+cp "$here/pages.mjs" "$here/check_page.mjs" "$here/check_keys.mjs" "$node"
 if ! cmp -s "$node/package-lock.json" "$node/node_modules/installed.json"; then
     echo "pages: installing $pages/package-lock.json into $node" >&2
     (cd "$node" && npm ci --no-audit --no-fund --loglevel=error) >&2

@@ -49,19 +49,11 @@ fn page_folder(page: &Path) -> PathBuf {
     here
 }
 
-/// Whether a word of a command stands for another: `SCENE.toml`, `DIR`, `WHEELS…`.
-#[cfg(unix)]
-fn stands_for_another(word: &str) -> bool {
-    let stem = word.trim_end_matches('…').split('.').next().unwrap_or_default();
-    stem.len() >= 3 && stem.chars().all(|c| c.is_ascii_uppercase())
-}
-
-/// The command line that a line of a page gives; `None` for one of other programs, and for one with words that stand for others.
+/// The command line that a line of a page gives; `None` for one of other programs.
 #[cfg(unix)]
 fn command(line: &str) -> Option<String> {
     let line = line.replace("cargo run --release -- ", "wheelrail ");
-    let own = line.starts_with("wheelrail ") && !line.split_whitespace().any(stands_for_another);
-    own.then_some(line)
+    line.starts_with("wheelrail ").then_some(line)
 }
 
 #[test]
@@ -238,6 +230,16 @@ fn pictures_of_the_gallery_are_of_today() {
     }
 }
 
+/// Puts a photograph of a page among the pictures of the manual.
+fn photograph(page: &Path, picture: &str, size: &str) {
+    let picture = Path::new(ROOT).canonicalize().unwrap().join("output/pictures").join(picture);
+    let mut browser = Command::new("chromium");
+    browser.args(["--headless", "--no-sandbox", "--enable-unsafe-swiftshader", "--hide-scrollbars"]);
+    browser.arg(format!("--window-size={size}")).arg(format!("--screenshot={}", picture.display()));
+    let output = browser.arg(page).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 /// The picture is a photograph of the page that the fleet has; the numbers below it are those of its table.
 #[test]
 fn the_fleet_of_the_gallery_is_of_today() {
@@ -256,12 +258,10 @@ fn the_fleet_of_the_gallery_is_of_today() {
         text += &format!("{:<16}{}\n", row[0], cells.collect::<String>());
     }
     if anew() {
-        let picture = Path::new(ROOT).canonicalize().unwrap().join("output/pictures/scenes/fleet.png");
-        let mut browser = Command::new("chromium");
-        browser.args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]);
-        browser.arg("--window-size=1280,866").arg(format!("--screenshot={}", picture.display()));
-        let output = browser.arg(here.join("fleet/fleet.html")).output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        photograph(&here.join("fleet/fleet.html"), "scenes/fleet.png", "1280,906");
+        let scene = scene.replace("fleet/fleet.toml", "scenes/60e1_s1002.toml");
+        wheelrail(&here, &["run", &scene, "--out", "run"]);
+        photograph(&here.join("run/view.html"), "view_html.png", "1280,936");
     }
     let page = std::fs::read_to_string(Path::new(ROOT).join("src/docs/gallery-of-scenes.md")).unwrap();
     assert!(page.contains(&text), "the page and its picture are to have\n{text}");

@@ -191,11 +191,54 @@ fn pages_open_in_a_browser_and_their_slider_gives_the_boundary_of_a_run() {
         crossing,
         flat,
     ]);
+    check("check_page.mjs", &[], &pages.to_string());
+}
+
+/// A page of every kind: of a run with one contact and two gaps, of one with two contacts, and of all other commands.
+#[test]
+fn pages_are_used_by_keyboard_at_three_widths_light_and_dark() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").canonicalize().unwrap();
+    let example = |name: &str| root.join(name).display().to_string();
+    let rail = include_str!("../../../../examples/scenes/flange_root.toml");
+    let runs = [
+        ("keys_rail", rail.replace("load = 60000.0", "approach = 0.08")),
+        ("keys_pair", wheelset("2.0", "approach = 0.08")),
+    ];
+    let mut pages: Vec<PathBuf> =
+        runs.iter().map(|(name, scene)| run(name, scene, 0).join("view.html")).collect();
+    let [scene, crossing, fleet, wheels, prw] = [
+        "scenes/wheelset.toml",
+        "crossing/crossing.toml",
+        "fleet/fleet.toml",
+        "fleet/wheelsets.csv",
+        "profiles/S1002.prw",
+    ]
+    .map(example);
+    let commands: [(&str, &[&str]); 5] = [
+        ("sweep.html", &["sweep", &scene, "--lateral", "-8:8:0.5", "--html"]),
+        ("crossing.html", &["march", &crossing, "--along", "-100:300:20", "--html"]),
+        ("conicity.html", &["conicity", &scene, "--html"]),
+        ("measures.html", &["profile", "measure", &prw, "APTA-120", "--nominal", "S1002", "--html"]),
+        ("fleet", &["fleet", &fleet, "--wheels", &wheels, "--rails", "60E1", "--out"]),
+    ];
+    for (name, arguments) in commands {
+        let out = folder(&format!("keys_{name}"));
+        let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
+        let output = program.args(arguments).arg(&out).output().unwrap();
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        pages.push(if out.is_dir() { out.join("fleet.html") } else { out });
+    }
+    let pages: Vec<&str> = pages.iter().map(|page| page.to_str().unwrap()).collect();
+    check("check_keys.mjs", &pages, "");
+}
+
+/// Runs a script with the browser, arguments and an input; it has to be content.
+fn check(script: &str, arguments: &[&str], input: &str) {
     let Some(tools) = tools() else { return };
     let mut node = Command::new("node");
-    node.arg("check_page.mjs").arg(&tools.browser).current_dir(&tools.folder);
+    node.arg(script).arg(&tools.browser).args(arguments).current_dir(&tools.folder);
     let mut node = node.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    node.stdin.take().unwrap().write_all(pages.to_string().as_bytes()).unwrap();
+    node.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
     let output = node.wait_with_output().unwrap();
     let lines = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{lines}{}", String::from_utf8_lossy(&output.stderr));

@@ -1,4 +1,6 @@
-// Colours: the scale of the separation, and those of the page's theme.
+// Colours: the scale of what is shown in colour, and those of the page's theme.
+
+import { element } from "./dom.js";
 
 /** Viridis at nine even places, dark to light. */
 const STOPS = [
@@ -22,10 +24,13 @@ export function colourOf(share) {
     return [...mixed, share <= 1 ? 255 : (255 * (FADED - share)) / (FADED - 1)];
 }
 
-/** The scale as a CSS gradient from left to right. */
-export function gradient() {
+/** A bar of all colours from left to right below its title, with names at shares of its length. */
+export function scaleBar(title, names) {
     const stops = STOPS.map((c, k) => `rgb(${c.join(" ")}) ${(100 * k) / (STOPS.length - 1)}%`);
-    return `linear-gradient(to right, ${stops.join(", ")})`;
+    const bar = element("div", { class: "bar", style: `background: linear-gradient(to right, ${stops.join(", ")})` });
+    const label = ([share, text]) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, text);
+    const marks = element("div", { class: "marks" }, ...names.map(label));
+    return element("div", { class: "legend", role: "img", "aria-label": `Scale of ${title}` }, element("div", {}, title), bar, marks);
 }
 
 /** The colours of the theme in use, by the names that the style sheet gives them. */

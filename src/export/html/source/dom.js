@@ -54,10 +54,24 @@ export function ticks([from, to], about) {
     });
 }
 
-/** A button that saves what a sheet shows as a PNG of this name, on the ground of the page. */
-export function saveButton(sheet, name) {
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** Direction of an arrow key, to the right and up; undefined of other keys, and of those that the browser takes. */
+export function arrow(event) {
+    return event.ctrlKey || event.metaKey || event.altKey ? undefined : ARROWS[event.key];
+}
+
+/** A sheet below its heading, a text or an element, with a button that saves it. */
+export function figure(kind, heading, sheet, ...content) {
+    const words = heading instanceof Node ? heading : element("span", {}, heading);
+    return element("figure", { class: kind }, element("figcaption", {}, words, saveButton(sheet, words)), sheet.canvas, ...content);
+}
+
+/** A button that saves what a sheet shows as a PNG, on the ground of the page, under the title of the page and its own. */
+function saveButton(sheet, heading) {
     const save = () => {
         const { canvas } = sheet;
+        const name = `${document.title}, ${heading.textContent}`;
         const copy = element("canvas", { width: canvas.width, height: canvas.height });
         const context = copy.getContext("2d");
         context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--sheet");
@@ -70,7 +84,8 @@ export function saveButton(sheet, name) {
             setTimeout(() => URL.revokeObjectURL(href), 10_000);
         });
     };
-    return element("button", { type: "button", class: "save", title: `Save this picture: ${name}.png`, "aria-label": `Save the picture ${name}`, onclick: save }, "PNG");
+    const label = `Save the picture: ${sheet.canvas.getAttribute("aria-label")}`;
+    return element("button", { type: "button", class: "save", title: "Save this picture as PNG", "aria-label": label, onclick: save }, "PNG");
 }
 
 /**

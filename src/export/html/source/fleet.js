@@ -1,8 +1,9 @@
 // The page of a fleet.
 
-import { colourOf, gradient, theme } from "./colours.js";
+import { theme } from "./colours.js";
 import { floats, pageData, profilePoints } from "./data.js";
-import { Sheet, element, fixed, followed } from "./dom.js";
+import { Sheet, element, figure, fixed } from "./dom.js";
+import { Heat } from "./heat.js";
 import { Plot } from "./plot.js";
 import { themeButton } from "./themes.js";
 
@@ -24,59 +25,39 @@ function bars({ title, axis, from, width, counts, told }) {
         plot.axes([axis, "number"]);
     }, { class: "cut" });
     sheets.push(sheet);
-    return element("figure", {}, element("figcaption", {}, title), sheet.canvas, element("output", {}, told));
+    return figure("bars", title, sheet, element("output", {}, told));
 }
 
 /** Where how many per cent of the wheels touch, by displacement, over the outline of a rail. */
-function heatMap(heat) {
-    const shares = floats(heat.shares);
-    const rows = shares.length / heat.cells;
-    // Half of all wheels in one cell have the brightest colour, fewer where no cell has so many.
-    const most = Math.max(...shares);
-    const across = [heat.from, heat.from + heat.width * heat.cells];
-    const up = [heat.first - heat.step / 2, heat.first + heat.step * (rows - 0.5)];
-    const rail = heat.rail && profilePoints(heat.rail).filter(([x]) => x >= across[0] - 3 && x <= across[1] + 3);
-    const wide = [across[0] - 3, across[1] + 3];
-    const said = element("output", {}, "The pointer over the map reads a cell.");
-    let plot;
-    const sheet = new Sheet("Share of the wheels that touch the rail, by displacement", (context, width, height) => {
-        const colours = theme();
-        const below = rail ? 0.26 * height : 0;
-        plot = new Plot(context, [66, 8, width - 80, height - below - 50], wide, up);
-        for (let row = 0; row < rows; row++) {
-            for (let cell = 0; cell < heat.cells; cell++) {
-                const share = shares[row * heat.cells + cell];
-                if (share === 0) continue;
-                const [red, green, blue] = colourOf(share / most);
-                context.fillStyle = `rgb(${red} ${green} ${blue})`;
-                const [left, right] = [cell, cell + 1].map((n) => plot.x(heat.from + n * heat.width));
-                const [top, bottom] = [row + 0.5, row - 0.5].map((n) => plot.y(heat.first + n * heat.step));
-                context.fillRect(left, top, right - left + 0.5, bottom - top + 0.5);
-            }
-        }
-        plot.axes(["x on the rail [mm]", "towards the rail [mm]"]);
-        if (!rail) return;
-        const heights = rail.map(([, z]) => z);
-        const range = [Math.max(Math.min(...heights), Math.max(...heights) - 25) - 1, Math.max(...heights) + 2];
-        const under = new Plot(context, [66, height - below + 4, width - 80, below - 8], wide, range);
-        under.clipped(() => under.line(rail, colours.rail, 1.8));
-    }, { class: "heat" });
-    followed(sheet.canvas, (event) => {
-        const at = plot?.back(event.offsetX, event.offsetY);
-        if (!at) return;
-        const [cell, row] = [Math.floor((at[0] - heat.from) / heat.width), Math.round((at[1] - heat.first) / heat.step)];
-        const share = cell >= 0 && cell < heat.cells && row >= 0 && row < rows ? shares[row * heat.cells + cell] : 0;
-        const from = heat.from + cell * heat.width;
-        said.value = `${fixed(share, 1)} % of the wheels touch ${fixed(from, 1)} to ${fixed(from + heat.width, 1)} mm at ${fixed(heat.first + row * heat.step, 2)} mm towards the rail`;
-    });
-    sheets.push(sheet);
-    const mark = (share) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, `${fixed(share * most, 1)} %`);
-    const legend = element(
-        "div", { class: "legend", role: "img", "aria-label": "Scale of the share of the wheels" },
-        element("div", { class: "bar", style: `background: ${gradient()}` }), element("div", { class: "marks" }, ...[0, 0.5, 1].map(mark)),
-    );
-    const names = heat.rail ? element("p", { class: "names" }, element("span", { class: "rail" }, `rail ${heat.rail.name}`)) : "";
-    return element("figure", {}, element("figcaption", {}, "Where the wheels touch the rail"), sheet.canvas, legend, names, said);
+function heatMap({ from, width, cells, first, step, rail, ...of }) {
+    const shares = floats(of.shares);
+    const rows = shares.length / cells;
+    const borders = [[cells, from, width], [rows, first - step / 2, step]].map(([count, begin, size]) => Array.from({ length: count + 1 }, (_, k) => begin + size * k));
+    const share = (cell, row) => shares[row * cells + cell];
+    const values = Float32Array.from(shares, (_, k) => share(Math.floor(k / rows), k % rows) || NaN);
+    const words = (cell, row) => {
+        const [begin, end] = borders[0].slice(cell, cell + 2);
+        return `${fixed(share(cell, row), 1)} % of the wheels touch ${fixed(begin, 1)} to ${fixed(end, 1)} mm at ${fixed(first + row * step, 2)} mm towards the rail`;
+    };
+    const map = {
+        title: "Where the wheels touch the rail", across: "x on the rail [mm]", up: "towards the rail [mm]", borders, values, words,
+        range: [0, Math.max(...shares)], name: "share of the wheels", format: (value) => `${fixed(value, 1)} %`,
+    };
+    const heat = new Heat(map, rail ? outline(rail, [borders[0][0] - 3, borders[0].at(-1) + 3]) : undefined);
+    sheets.push(heat.sheet);
+    return heat.figure(...(rail ? [element("p", { class: "names" }, element("span", { class: "rail" }, `rail ${rail.name}`))] : []));
+}
+
+/** The top of a rail below a map, at the same x. */
+function outline(rail, across) {
+    const points = profilePoints(rail).filter(([x]) => x >= across[0] && x <= across[1]);
+    const heights = points.map(([, z]) => z);
+    const up = [Math.max(Math.min(...heights), Math.max(...heights) - 25) - 1, Math.max(...heights) + 2];
+    const draw = (context, place) => {
+        const plot = new Plot(context, place, across, up);
+        plot.clipped(() => plot.line(points, theme().rail, 1.8));
+    };
+    return { share: 0.26, across, draw };
 }
 
 function table(caption, columns, rows) {

@@ -53,7 +53,7 @@ export class PlanView {
         plot.clipped(() => {
             if (isGap) plot.lines(this.isolines, "rgb(255 255 255 / 35%)", 1);
             if (contact.approach && delta !== contact.approach) {
-                plot.lines(gap.boundary, colours.given, 1.5, [4, 3]);
+                plot.lines(gap.boundary, colours.given, 1.75, [1.5, 3]);
             }
             plot.lines(others, colours.boundary, 1.25, [4, 3]);
             plot.lines(lines, colours.halo, 4.5);

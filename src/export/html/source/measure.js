@@ -2,7 +2,7 @@
 
 import { theme } from "./colours.js";
 import { floats, pageData } from "./data.js";
-import { Sheet, element, fixed } from "./dom.js";
+import { Sheet, arrow, element, figure, fixed } from "./dom.js";
 import { Plot } from "./plot.js";
 import { themeButton } from "./themes.js";
 
@@ -70,9 +70,10 @@ const sheet = new Sheet("The profile over its nominal, with magnified difference
 const chosen = element("select", { id: "file", onchange: () => go(chosen.selectedIndex) }, ...files.map(({ name }, k) => element("option", { value: k }, name)));
 const [before, after] = [[-1, "Previous"], [1, "Next"]].map(([step, text]) => element("button", { type: "button", onclick: () => go(at + step) }, text));
 const number = element("output", { for: "file", class: "said" });
-const heading = element("figcaption", {});
+const heading = element("span", {});
 const alignment = element("output", {});
 const names = element("p", { class: "names" }, element("span", { class: "rail" }, "nominal"), element("span", { class: "wheel" }, "measured"), element("span", { class: "difference" }, "difference"));
+const drawing = figure("profile", heading, sheet, names, alignment);
 const values = element("div", { class: "facts wide" });
 const lists = element("div", {});
 
@@ -84,8 +85,10 @@ function go(to) {
     [before.disabled, after.disabled] = [at === 0, at === files.length - 1];
     number.value = `${at + 1} of ${files.length}`;
     const [largest, times] = scale(file);
-    heading.textContent = file.differences.length ? `Differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "The profile" : "No profile of its own";
+    const shown = file.differences.length ? `differences along the normal × ${times}; the largest is ${fixed(largest, 3)} mm` : file.measured.length ? "the profile" : "no profile of its own";
+    heading.textContent = `${file.name}: ${shown}`;
     sheet.canvas.hidden = file.measured.length === 0;
+    drawing.querySelector(".save").hidden = sheet.canvas.hidden;
     if (file.measured.length) sheet.canvas.style.aspectRatio = shape(file, times);
     alignment.value = file.alignment;
     names.hidden = file.differences.length === 0;
@@ -102,12 +105,12 @@ page.replaceChildren(
     element("header", {}, element("h1", {}, data.title), element("p", { class: "from" }, `${data.about}; wheelrail ${data.version}`), themeButton(() => sheet.refresh())),
     element("div", { class: "head" }, element("div", { class: "slider" }, element("label", { for: "file" }, "File"), chosen, before, after, number)),
     lists,
-    element("div", { class: "fleet" }, element("figure", {}, heading, sheet.canvas, names, alignment), values),
+    element("div", { class: "fleet" }, drawing, values),
     element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. An interval holds 95 % of the samples of noise, or of further measurements; the ± behind it is the sampling error of its ends. The left and right arrows go through the files.")),
 );
 page.addEventListener("keydown", (event) => {
-    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!step || event.target === chosen || event.ctrlKey || event.metaKey || event.altKey) return;
+    const [step] = arrow(event) ?? [0];
+    if (!step || event.target === chosen) return;
     go(at + step);
     event.preventDefault();
 });

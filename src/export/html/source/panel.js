@@ -1,9 +1,9 @@
 // All views of one contact, with the slider, the table and the keys.
 
-import { gradient } from "./colours.js";
+import { scaleBar } from "./colours.js";
 import { closed, contours, near } from "./contours.js";
 import { Cut } from "./cuts.js";
-import { element, fixed, saveButton } from "./dom.js";
+import { arrow, element, figure, fixed } from "./dom.js";
 import { PlanView } from "./map.js";
 import { Profiles } from "./profiles.js";
 import { SpaceView } from "./scene.js";
@@ -24,6 +24,7 @@ export class Panel {
         this.profiles = new Profiles(state);
         this.legend = element("div");
         this.boundary = element("span", { class: "boundary" });
+        this.given = element("span", { class: "given" }, "boundary of the run");
         this.edge = element("span", { class: "edge" }, "edge of the true contact");
         this.node = this.build(number);
         this.node.addEventListener("keydown", (event) => this.key(event));
@@ -88,10 +89,10 @@ export class Panel {
     /** What the plan shows in colour, where there is a choice. */
     layers(number) {
         const { layers } = this.contact;
-        if (layers.length === 1) return this.edge;
+        if (layers.length === 1) return "";
         const choice = element("select", { id: `layer-${number}` }, ...layers.map(({ name }, k) => element("option", { value: k }, name)));
         choice.addEventListener("change", () => this.showLayer(choice.value));
-        return element("div", { class: "layers" }, element("label", { for: choice.id }, "colour "), choice, this.edge);
+        return element("div", { class: "layers" }, element("label", { for: choice.id }, "colour "), choice);
     }
 
     showLayer(number) {
@@ -108,7 +109,7 @@ export class Panel {
     /** The scale of colours of the pressure. */
     pressures() {
         const { name, scale: largest } = this.state.layer;
-        return this.scaleOf(name, "linear from 0", [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
+        return scaleBar(`${name}, linear from 0`, [[0, "0"], [0.5, fixed(largest / 2, 0)], [1, `${fixed(largest, 0)} N/mm²`]]);
     }
 
     /** The scale of colours of a gap, which reaches from 0 to 3 δ of the run. */
@@ -119,20 +120,13 @@ export class Panel {
         const names = approach
             ? [[0, "0"], [1 / 3, "δ"], [1, `3 δ = ${value(1)} ${unit}`]]
             : [[0, "0"], [0.5, value(0.5)], [1, `${value(1)} ${unit}`]];
-        return this.scaleOf(name, approach ? "linear from 0 to 3 δ of the run" : "linear from 0", names);
-    }
-
-    /** A bar of all colours with names at shares of its length. */
-    scaleOf(title, about, names) {
-        const label = ([share, text]) => element("span", { style: `left: ${100 * share}%; transform: translateX(-${100 * share}%)` }, text);
-        const bar = element("div", { class: "bar", style: `background: ${gradient()}` });
-        return element("div", { class: "legend", role: "img", "aria-label": `Scale of ${title}, ${about}` }, element("div", {}, `${title}, ${about}`), bar, element("div", { class: "marks" }, ...names.map(label)));
+        return scaleBar(`${name}, ${approach ? "linear from 0 to 3 δ of the run" : "linear from 0"}`, names);
     }
 
     /** What the lines of the plan are. */
     lines() {
         const cuts = element("span", { class: "cuts" }, "cuts");
-        return element("p", { class: "names" }, this.boundary, cuts);
+        return element("p", { class: "names" }, this.boundary, this.edge, cuts, this.given);
     }
 
     names() {
@@ -163,6 +157,7 @@ export class Panel {
     say() {
         const { contact, state } = this;
         const own = contact.approach && state.delta === contact.approach;
+        this.given.hidden = own || !contact.approach;
         const cut = !own && state.lines.some((line) => !closed(line));
         const area = this.area();
         const size = cut ? "cut by the edge of the page's grid" : `area ${fixed(area, own ? 3 : 2)} mm²`;
@@ -185,17 +180,17 @@ export class Panel {
 
     /** Arrows move the cut (turn the view, where it has the focus), plus and minus change δ, Home goes back to C. */
     key(event) {
-        if (event.ctrlKey || event.metaKey || event.altKey) return;
         const { state, contact } = this;
+        const direction = arrow(event);
         const inSpace = event.target === this.space.sheet.canvas;
         const onSheet = inSpace || event.target.tagName === "CANVAS";
         const step = (axis) => contact.grid.steps[axis] * (event.shiftKey ? 10 : 1);
-        const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
         const delta = { "+": 1, "=": 1, "-": -1, "\u2212": -1 }[event.key];
+        if (event.ctrlKey || event.metaKey || event.altKey) return;
         if (delta) this.setDelta(state.delta + (delta * contact.scale) / (STEPS / 6));
-        else if (inSpace && this.space.key(event.key)) event.preventDefault();
-        else if (onSheet && event.key in moves) {
-            const [dx, dy] = moves[event.key];
+        else if (inSpace && this.space.key(event)) event.preventDefault();
+        else if (onSheet && direction) {
+            const [dx, dy] = direction;
             this.moveCut([state.cut[0] + dx * step(0), state.cut[1] + dy * step(1)]);
         } else if (onSheet && event.key === "Home") this.moveCut([0, 0]);
         else return;
@@ -205,11 +200,6 @@ export class Panel {
     refresh() {
         [this.space, this.plan, ...this.cuts, this.profiles].forEach((view) => view.sheet.refresh());
     }
-}
-
-function figure(kind, title, sheet, ...content) {
-    const caption = element("figcaption", {}, title, saveButton(sheet, `${document.title}, ${title}`));
-    return element("figure", { class: kind }, caption, sheet.canvas, ...content);
 }
 
 function kept(value, [low, high]) {

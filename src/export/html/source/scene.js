@@ -2,7 +2,7 @@
 
 import {
     AmbientLight, Box3, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-    MeshLambertMaterial, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer, BufferGeometry, Float32BufferAttribute,
+    MeshLambertMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer, BufferGeometry, Float32BufferAttribute,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -10,10 +10,13 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { Space } from "./bodies.js";
 import { theme } from "./colours.js";
-import { Sheet } from "./dom.js";
+import { Sheet, arrow } from "./dom.js";
 
 /** Half the length of the rail and of the wheel's arc, as multiples of the rail profile's width. */
 const REACH = { rail: 1.0, wheel: 1.35 };
+
+/** Room that a picture has around the bodies, as a multiple of theirs. */
+const AROUND = 1.08;
 
 /** One turn of the view by a key, rad. */
 const TURN = Math.PI / 24;
@@ -116,28 +119,34 @@ export class SpaceView {
             whole: new Vector3(0, -1, 0.32).add(aside),
             above: normal.clone(),
         };
+        const direction = directions[view].normalize();
         const bodies = this.bodies();
-        const distance = { contact: Math.max(3.4 * this.near, 2 * this.wide), whole: this.fitting(bodies.radius), above: 2.6 * this.near }[view];
-        this.controls.target.copy(view === "whole" ? bodies.center : new Vector3());
+        const distance = { contact: Math.max(3.4 * this.near, 2 * this.wide), whole: this.fitting(bodies, direction), above: 2.6 * this.near }[view];
+        this.controls.target.copy(view === "whole" ? bodies.getCenter(new Vector3()) : new Vector3());
         // Along ζ the picture is turned as the plan beside it, η upwards, until the reader turns it.
         this.camera.up.set(...(view === "above" ? [0, 1, 0] : [0, 0, 1]));
-        this.camera.position.copy(directions[view].normalize().multiplyScalar(distance)).add(this.controls.target);
+        this.camera.position.copy(direction).multiplyScalar(distance).add(this.controls.target);
         this.controls.update();
         this.sheet.refresh();
     }
 
-    /** The sphere around the rail and the wheel that is shown. */
+    /** The box around the rail and the wheel that is shown. */
     bodies() {
         const box = new Box3().setFromObject(this.rail);
         Object.values(this.wheels).filter((wheel) => wheel.visible).forEach((wheel) => box.expandByObject(wheel));
-        return box.getBoundingSphere(new Sphere());
+        return box;
     }
 
-    /** The distance from which a sphere fills the picture, in its narrower direction. */
-    fitting(radius) {
+    /** The distance from the middle of a box at which all of it is in the picture, seen from this direction. */
+    fitting(box, direction) {
         const { clientWidth: width, clientHeight: height } = this.sheet.canvas;
-        const upright = Math.tan(((this.camera.fov / 2) * Math.PI) / 180);
-        return radius / Math.sin(Math.atan(upright * Math.min(1, width / Math.max(height, 1) || 1)));
+        const upright = Math.tan(((this.camera.fov / 2) * Math.PI) / 180) / AROUND;
+        const across = upright * (width / Math.max(height, 1) || 1);
+        const right = new Vector3(0, 0, 1).cross(direction).normalize();
+        const up = direction.clone().cross(right);
+        const half = box.getSize(new Vector3()).multiplyScalar(0.5);
+        const corners = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => new Vector3(x, y, z).multiply(half))));
+        return Math.max(...corners.map((at) => at.dot(direction) + Math.max(Math.abs(at.dot(right)) / across, Math.abs(at.dot(up)) / upright)));
     }
 
     /** Shows the wheel "half", behind the section through C, "whole" or "none". */
@@ -148,20 +157,20 @@ export class SpaceView {
     }
 
     /** Turns the view by keys; tells whether the key was one of its own. */
-    key(name) {
-        const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-        const steps = { PageUp: 0.85, PageDown: 1 / 0.85 };
-        if (!this.controls || !(name in turns || name in steps)) return false;
+    key(event) {
+        const turn = arrow(event);
+        const step = { PageUp: 0.85, PageDown: 1 / 0.85 }[event.key];
+        if (!this.controls || !(turn || step)) return false;
         const { position } = this.camera;
         const { target } = this.controls;
         this.camera.up.set(0, 0, 1);
         const arm = position.clone().sub(target);
-        if (name in steps) arm.multiplyScalar(steps[name]);
+        if (step) arm.multiplyScalar(step);
         else {
             const up = new Vector3(0, 0, 1);
-            arm.applyAxisAngle(up, TURN * turns[name][0]);
+            arm.applyAxisAngle(up, TURN * turn[0]);
             const level = new Vector3().crossVectors(up, arm).normalize();
-            const lifted = arm.clone().applyAxisAngle(level, -TURN * turns[name][1]);
+            const lifted = arm.clone().applyAxisAngle(level, -TURN * turn[1]);
             // The view does not turn over at the pole.
             if (lifted.clone().cross(up).length() > 0.02 * lifted.length()) arm.copy(lifted);
         }

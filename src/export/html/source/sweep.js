@@ -2,8 +2,8 @@
 
 import { Curves, nearest } from "./curves.js";
 import { floats, pageData, pairsOf } from "./data.js";
-import { element, fixed, saveButton } from "./dom.js";
-import { Heat } from "./heat.js";
+import { arrow, element, figure, fixed } from "./dom.js";
+import { Heat, bordersOf } from "./heat.js";
 import { PairView } from "./pair.js";
 import { themeButton } from "./themes.js";
 
@@ -21,8 +21,7 @@ const panels = data.panels.map((panel) => {
     const curves = panel.curves.map((curve) => ({ ...curve, values: floats(curve.values) }));
     return new Curves({ ...panel, curves }, data.abscissa, state, move);
 });
-const of = data.map;
-const heat = of ? new Heat({ ...of, gauges: floats(of.gauges), amplitudes: floats(of.amplitudes), values: floats(of.values) }) : null;
+const heat = data.map ? conicityMap(data.map) : null;
 const said = [...sides, ...panels].map(() => element("output", {}));
 const position = element("output", { for: "position", class: "said" });
 const slider = element("input", {
@@ -45,12 +44,12 @@ page.replaceChildren(
         { class: "head" },
         element("div", { class: "slider" }, element("label", { for: "position" }, name), slider, position, element("label", { for: "lifted", class: "choice" }, lifted, " wheels lifted")),
     ),
-    element("div", { class: "pairs" }, ...sides.map((side, k) => figure(side.side.right ? "Right side" : "Left side", side, said[k]))),
+    element("div", { class: "pairs" }, ...sides.map((side, k) => figure("pair", side.side.right ? "Right side" : "Left side", side.sheet, names(side.pair), said[k]))),
     element(
         "div",
         { class: "curves" },
-        ...panels.map((panel, k) => figure(panel.panel.title, panel, said[sides.length + k])),
-        ...(heat ? [figure(heat.map.title, heat, heat.readout)] : []),
+        ...panels.map((panel, k) => figure("curve", panel.panel.title, panel.sheet, said[sides.length + k])),
+        ...(heat ? [heat.figure()] : []),
     ),
     ...(data.events.rows.length > 0 ? [eventList()] : []),
     ...(data.figures.length > 0 ? [keyFigures()] : []),
@@ -58,26 +57,42 @@ page.replaceChildren(
         "footer",
         {},
         element("p", {}, "The pointer over a curve, the slider, and the left and right arrows (with Shift by ten positions) choose the position; the profiles above stand where the wheelset is there, with its roll and height, seen along the track. Filled: the lowest contact of a side; open: further ones within the gap that the scene asks for."),
+        ...(data.events.rows.length > 0 ? [element("p", {}, "Triangles below the curves are the events of the list.")] : []),
         ...data.notes.map((note) => element("p", {}, note)),
     ),
 );
 page.addEventListener("keydown", (event) => {
-    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!step || event.target === slider || event.ctrlKey || event.metaKey || event.altKey) return;
+    const [step] = arrow(event) ?? [0];
+    if (!step || event.target === slider) return;
     move(state.at + step * (event.shiftKey ? 10 : 1));
     event.preventDefault();
 });
 move(state.at);
 
-function figure(title, view, output) {
-    return element("figure", {}, element("figcaption", {}, title, saveButton(view.sheet, `${data.title}, ${title}`)), view.sheet.canvas, output);
+/** What the lines of a pair are. */
+function names({ names: [rail, wheel] }) {
+    return element("p", { class: "names" }, element("span", { class: "rail" }, `rail ${rail}`), element("span", { class: "wheel" }, `wheel ${wheel}`));
+}
+
+/** The conicity over gauge and amplitude. */
+function conicityMap({ title, across, up, ...arrays }) {
+    const [gauges, amplitudes, values] = [arrays.gauges, arrays.amplitudes, arrays.values].map(floats);
+    const known = [...values].filter(Number.isFinite);
+    const words = (i, k) => `${fixed(gauges[i], 2)} mm, amplitude ${fixed(amplitudes[k], 2)} mm: ${fixed(values[i * amplitudes.length + k], 3)}`;
+    return new Heat({
+        title, across, up, values, words,
+        borders: [gauges, amplitudes].map(bordersOf),
+        range: known.length > 0 ? [Math.min(...known), Math.max(...known)] : [0, 1],
+        name: "equivalent conicity tan γ", format: (value) => fixed(value, 3),
+    });
 }
 
 /** What happens between the positions: the place of each goes there. */
 function eventList() {
     const { columns, rows, more } = data.events;
     const go = (at, place) => element("button", { type: "button", onclick: () => move(nearest(positions, at)), "aria-label": `Go to ${place}` }, place);
-    const row = ({ at, cells: [place, ...cells] }) => element("tr", {}, element("td", {}, go(at, place)), ...cells.map((cell) => element("td", {}, cell)));
+    const named = (k, cell) => element("td", { "data-name": columns[k] }, cell);
+    const row = ({ at, cells: [place, ...cells] }) => element("tr", {}, named(0, go(at, place)), ...cells.map((cell, k) => named(k + 1, cell)));
     const table = element(
         "table", { class: "events" }, element("caption", {}, "Events"),
         element("thead", {}, element("tr", {}, ...columns.map((column) => element("th", { scope: "col" }, column)))), element("tbody", {}, ...rows.map(row)),

@@ -1,0 +1,31 @@
+// How the tests of pages open one.
+import { pathToFileURL } from "node:url";
+
+export const FLAGS = [
+    "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+];
+
+/** How long an action may take on a machine that has much else to do, ms: what never comes ends a test, what is slow does not. */
+const PATIENCE = 300_000;
+
+/** Opens a page; whatever it says or asks for is a failure. */
+export async function open(context, file) {
+    const page = await context.newPage();
+    page.setDefaultTimeout(PATIENCE);
+    page.faults = [];
+    page.on("console", (message) => page.faults.push(`console: ${message.text()}`));
+    page.on("pageerror", (error) => page.faults.push(error.stack));
+    page.on("request", (request) => {
+        if (request.url() !== pathToFileURL(file).href) page.faults.push(`request: ${request.url()}`);
+    });
+    await page.goto(pathToFileURL(file).href);
+    await page.waitForFunction(() => window.wheelrail !== undefined);
+    await settled(page);
+    return page;
+}
+
+/** Waits until what was asked for is drawn. */
+export function settled(page) {
+    return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
