@@ -55,8 +55,8 @@ fn sweeps_in_any_order_give_the_same_bits() -> Result<()> {
         let system = WheelsetOnTrack::new(pair, RailDistance::Gauge { gauge: 1435.0, height: 14.0 }, backs)?;
         let at = |k: u64| {
             let lateral = 9.0 * (2.0 * k as f64 / (count - 1) as f64 - 1.0);
-            let roll = if k % 3 == 0 { Roll::Neglect } else { Roll::Solve };
-            Position { lateral, yaw: if k % 2 == 0 { 0.0 } else { 0.01 }, roll }
+            let roll = if k.is_multiple_of(3) { Roll::Neglect } else { Roll::Solve };
+            Position { lateral, yaw: if k.is_multiple_of(2) { 0.0 } else { 0.01 }, roll }
         };
         let positions: Vec<Position> = (0..count).map(at).collect();
         let mut order: Vec<usize> = (0..positions.len()).collect();
