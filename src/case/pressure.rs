@@ -13,7 +13,7 @@ use crate::patch::Window;
 const SETTLED: f64 = 1e-4;
 
 /// Estimated error of the largest pressure, relative, above which cells are divided again, and of which the user is told.
-const DOUBTFUL: f64 = 0.02;
+const DOUBTFUL: f64 = 0.01;
 
 /// Parts into which the steps of a grid are divided; an odd number leaves every point of the grid in the middle of a cell. On the
 /// steps themselves the largest pressure was off by 3 % where profiles have joints, and its estimate did not show it.
@@ -24,6 +24,42 @@ const MOST_UNASKED: usize = 300_000;
 
 /// Most cells that may be asked for: they take two seconds.
 const MOST_ASKED: usize = 1_000_000;
+
+/// Difference of the largest pressure on the cells of a grid from that on finer ones, relative, of which the user is told.
+const ROUGH: f64 = 0.02;
+
+/// What a solver finds on the cells of an automatic grid, whose points are their middles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnGrid {
+    /// The largest pressure on these cells \[N/mm²\].
+    pub largest: f64,
+    /// That on finer cells \[N/mm²\]: those of the pressures that were asked for, or else half as wide.
+    pub finer: f64,
+}
+
+impl OnGrid {
+    /// Solves a site on the cells of its automatic grid, and on cells half as wide if no finer pressure is known. `None` on other grids,
+    /// on unequal steps, for more cells than are made unasked, and where pressures do not settle.
+    fn new(site: &Site, finer: Option<f64>, modulus: f64) -> Option<Self> {
+        let Grid { xi, eta, groups, .. } = &site.grid;
+        if groups.is_empty() {
+            return None;
+        }
+        let steps = [step("xi", xi).ok()?, step("eta", eta).ok()?];
+        let most = |parts: usize| {
+            let cells = cells_of([xi, eta], steps, [parts; 2], MOST_UNASKED).ok()?;
+            let region = overlap(&site.contact, &site.grid, cells).ok()?;
+            let [found, _] = press_alone(region, super::wheel::SETTLED, modulus).ok()?;
+            Some(found.values().into_iter().fold(0.0, f64::max))
+        };
+        Some(Self { finer: finer.or_else(|| most(2))?, largest: most(1)? })
+    }
+
+    /// Gives the difference of the pressures, relative to the finer one.
+    pub fn difference(&self) -> f64 {
+        self.largest / self.finer - 1.0
+    }
+}
 
 /// The pressures of a part, in its contact frame.
 #[derive(Debug, Clone)]
@@ -42,6 +78,8 @@ pub struct PartPressure {
     pub field: Option<Vec<f64>>,
     /// The edges of the true contact: lines in ξ and η \[mm\].
     pub outline: Vec<Vec<[f64; 2]>>,
+    /// What the cells of the grid do to the largest pressure; `None` on grids that are not automatic.
+    pub on_grid: Option<OnGrid>,
 }
 
 impl PartPressure {
@@ -54,11 +92,15 @@ impl PartPressure {
         if site.is_infeasible() || site.contact.approach.is_none() {
             return Ok(None);
         }
+        let modulus = question.modulus();
         let found = match question.pressure {
-            Some(asked) => Some(Self::over_grid(site, asked, question.modulus())?),
+            Some(asked) => Some(Self::over_grid(site, asked, modulus)?),
             None => Self::of_load(&site.contact, &site.grid)?,
         };
-        Ok(found.filter(|found| found.load > 0.0))
+        let Some(mut found) = found.filter(|found| found.load > 0.0) else { return Ok(None) };
+        let finer = found.field.is_some().then_some(found.largest.pressure_n_per_mm2);
+        found.on_grid = OnGrid::new(site, finer, modulus);
+        Ok(Some(found))
     }
 
     /// Reads the pressures that the load was found with.
@@ -78,8 +120,8 @@ impl PartPressure {
     /// Solves the pressures over the grid of a site, of equal steps; `modulus` is E* \[N/mm²\].
     ///
     /// The points of the grid are middles of cells, whose sides are the steps divided by an odd number: by three unless a side is asked
-    /// for, and by nine where the largest pressure may then err by more than 2 %.
-    /// Accuracy: the largest pressure within 1 % and the load within 0.3 % where `largest_error` is not beyond 2 %; at a kink of a profile
+    /// for, and by nine where the largest pressure may then err by more than 1 %.
+    /// Accuracy: the largest pressure within 1 % and the load within 0.3 % where `largest_error` is not beyond 1 %; at a kink of a profile
     /// the elastic pressure has no bound. Cost: 30 ms for 200 × 200 cells, and s in their middles.
     ///
     /// # Errors
@@ -117,6 +159,7 @@ impl PartPressure {
             cell: solved.cells.step,
             field: None,
             outline: outline(solved),
+            on_grid: None,
         }
     }
 
@@ -141,17 +184,27 @@ impl PartPressure {
         self.largest_error > DOUBTFUL * self.largest.pressure_n_per_mm2
     }
 
-    /// Says how little the largest pressure is known, where it was asked for and errs by more than 2 %.
-    pub(super) fn warning(&self) -> Option<String> {
+    /// Says how little the largest pressure is known, where it was asked for and may err by more than 1 %, and what the cells of the
+    /// grid do to it, where that is more than 2 %.
+    pub(super) fn warnings(&self) -> Vec<String> {
         let (p, error) = (self.largest.pressure_n_per_mm2, self.largest_error);
         let [xi, eta] = self.cell;
-        (self.field.is_some() && self.is_doubtful()).then(|| {
+        let doubtful = (self.field.is_some() && self.is_doubtful()).then(|| {
             format!(
                 "the largest pressure, {p:.0} N/mm² on cells of {xi:.2e} x {eta:.2e} mm, may err by {:.0} %: give a smaller \
                  patch.pressure_cell; at a kink of a profile it has no bound",
                 100.0 * error / p
             )
-        })
+        });
+        let rough = self.on_grid.filter(|on| on.difference().abs() > ROUGH).map(|on| {
+            format!(
+                "on the cells of this grid a solver finds a largest pressure of {:.0} N/mm², which is {:+.1} % off that on finer \
+                 cells: give a smaller grid.spacing",
+                on.largest,
+                100.0 * on.difference()
+            )
+        });
+        doubtful.into_iter().chain(rough).collect()
     }
 }
 

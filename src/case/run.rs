@@ -222,7 +222,7 @@ fn warnings_of(site: &Site, analysis: &Analysis, (landmarks, other): (&SideLandm
             "the separation's estimated error, {error:.1e} mm, is above grid.tolerance, {tolerance:e} mm"
         ));
     }
-    out.extend(analysis.pressure.as_ref().and_then(PartPressure::warning));
+    out.extend(analysis.pressure.iter().flat_map(PartPressure::warnings));
     out.extend(doubts_of(site, landmarks, other).iter().map(Doubt::to_string));
     out
 }

@@ -183,6 +183,11 @@ fn pressure(found: &PartPressure) -> Value {
         "normal_load_n": found.load,
         "cell_mm": found.cell,
         "over_grid": found.field.is_some(),
+        "on_grid": found.on_grid.map(|on| json!({
+            "largest_n_per_mm2": on.largest,
+            "finer_n_per_mm2": on.finer,
+            "difference": on.difference(),
+        })),
     })
 }
 

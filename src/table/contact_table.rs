@@ -42,18 +42,15 @@ pub struct ContactTable {
     forks: Vec<Fork>,
     cells: Vec<Cell>,
     /// Coefficient number k of the powers of t, of number j of those of u, of quantity q in cell c, at
-    /// ((c · powers of u + j) · [`COEFFICIENTS`] + k) · quantities + q; not a number where the quantity does not exist.
+    /// ((c · powers of u + j) · [`COEFFICIENTS`] + k) · stride + q; not a number where the quantity does not exist.
     coefficients: Vec<f64>,
 }
 
 /// Quantities that are computed together.
-const LANES: usize = 4;
+const LANES: usize = 8;
 
-/// Positions that one thread takes at a time.
-const TOGETHER: usize = 4096;
-
-/// Positions whose values are found before they are put into columns: 7 kB.
-const ROWS: usize = 32;
+/// Positions that one thread takes at a time: their values, 500 kB, stay in its cache until all are there.
+const TOGETHER: usize = 2048;
 
 impl ContactTable {
     /// Takes a tree as a table.
@@ -81,14 +78,15 @@ impl ContactTable {
             return Err(wrong(format!("cell {}", c + 1), "curves of the table"));
         }
         let (rows, count) = (about.yaw_coefficients() * COEFFICIENTS, quantities.len());
-        let mut coefficients = vec![f64::NAN; cells.len() * rows * count];
-        for (own, all) in by_cell.iter().zip(coefficients.chunks_exact_mut((rows * count).max(1))) {
+        let stride = stride(&quantities);
+        let mut coefficients = vec![f64::NAN; cells.len() * rows * stride];
+        for (own, all) in by_cell.iter().zip(coefficients.chunks_exact_mut((rows * stride).max(1))) {
             // A cell under one yaw in a table over many has only the first coefficients of the yaw.
             if !own.is_empty() {
                 all.fill(0.0);
             }
-            for (row, out) in own.iter().zip(all.chunks_exact_mut(count)) {
-                out.copy_from_slice(&row[..count]);
+            for (row, out) in own.iter().zip(all.chunks_exact_mut(stride)) {
+                out[..count].copy_from_slice(&row[..count]);
             }
         }
         Ok(Self { about, quantities, curves, forks, cells, coefficients })
@@ -137,11 +135,12 @@ impl ContactTable {
     /// Returns the coefficients of 1, t, … t⁸ of a quantity over a cell that belong to u^j, with t from −1 to 1 from curve to curve and u over
     /// the yaws of the cell; not numbers where the quantity does not exist.
     pub fn coefficients(&self, cell: usize, quantity: usize, j: usize) -> [f64; COEFFICIENTS] {
-        let (count, rows) = (self.quantities.len(), self.about.yaw_coefficients());
-        from_fn(|k| self.coefficients[((cell * rows + j) * COEFFICIENTS + k) * count + quantity])
+        let (stride, rows) = (stride(&self.quantities), self.about.yaw_coefficients());
+        from_fn(|k| self.coefficients[((cell * rows + j) * COEFFICIENTS + k) * stride + quantity])
     }
 
     /// Returns the number of the cell of a lateral displacement \[mm\] and a yaw \[rad\]; `None` outside the range.
+    #[inline(always)]
     pub fn cell(&self, lateral: f64, yaw: f64) -> Option<usize> {
         let within = |[from, to]: [f64; 2], value: f64| (from..=to).contains(&value);
         if !within(self.about.lateral, lateral) || !within(self.about.yaw, yaw) {
@@ -164,6 +163,7 @@ impl ContactTable {
     }
 
     /// Returns the displacements \[mm\] at which a cell begins and ends under a yaw \[rad\].
+    #[inline(always)]
     pub fn ends(&self, cell: usize, yaw: f64) -> [f64; 2] {
         self.cells[cell].curves.map(|curve| self.curves[curve].at(yaw))
     }
@@ -179,41 +179,32 @@ impl ContactTable {
     /// Accuracy: the stated error of each quantity, but for [`About::beside_curves`] around hops and joints. Cost: some 50 ns under one yaw,
     /// 300 ns over a range of yaws.
     pub fn fill(&self, lateral: f64, yaw: f64, out: &mut [f64]) {
-        let Some((rows, t, u)) = self.found(lateral, yaw) else {
-            out.fill(f64::NAN);
-            return;
-        };
-        let (whole, rest) = out.as_chunks_mut::<LANES>();
-        let behind = LANES * whole.len();
-        for (k, values) in whole.iter_mut().enumerate() {
-            *values = self.values(rows, LANES * k, t, u);
-        }
-        for (k, value) in rest.iter_mut().enumerate() {
-            [*value] = self.values(rows, behind + k, t, u);
+        match self.cell(lateral, yaw) {
+            Some(cell) => self.fill_from(cell, lateral, yaw, out),
+            None => out.fill(f64::NAN),
         }
     }
 
-    /// Gives N quantities from a number on, from the coefficients of a cell.
-    fn values<const N: usize>(&self, rows: &[f64], first: usize, t: f64, u: f64) -> [f64; N] {
-        let count = self.quantities.len();
-        let mut values = [0.0; N];
-        for k in (0..COEFFICIENTS).rev() {
-            let mut sums = [0.0; N];
-            for row in rows.chunks_exact(COEFFICIENTS * count).rev() {
-                let own = &row[k * count + first..][..N];
-                sums = from_fn(|i| sums[i] * u + own[i]);
-            }
-            values = from_fn(|i| values[i] * t + sums[i]);
-        }
-        values
-    }
-
-    /// Returns the coefficients of a cell, and where a position is in it.
-    fn found(&self, lateral: f64, yaw: f64) -> Option<(&[f64], f64, f64)> {
-        let cell = self.cell(lateral, yaw)?;
-        let rows = self.about.yaw_coefficients() * COEFFICIENTS * self.quantities.len();
+    /// Gives all quantities at a position in a cell.
+    #[inline(always)]
+    fn fill_from(&self, cell: usize, lateral: f64, yaw: f64, out: &mut [f64]) {
+        let stride = stride(&self.quantities);
+        let count = self.about.yaw_coefficients() * COEFFICIENTS * stride;
+        let rows = &self.coefficients[cell * count..][..count];
         let t = share(self.ends(cell, yaw), lateral).clamp(-1.0, 1.0);
-        Some((&self.coefficients[cell * rows..][..rows], t, share(self.cells[cell].yaw, yaw)))
+        let u = share(self.cells[cell].yaw, yaw);
+        for (group, out) in out.chunks_mut(LANES).enumerate() {
+            let mut values = [0.0; LANES];
+            for k in (0..COEFFICIENTS).rev() {
+                let mut sums = [0.0; LANES];
+                for row in rows.chunks_exact(COEFFICIENTS * stride).rev() {
+                    let own = &row[k * stride + LANES * group..][..LANES];
+                    sums = from_fn(|i| sums[i] * u + own[i]);
+                }
+                values = from_fn(|i| values[i] * t + sums[i]);
+            }
+            out.copy_from_slice(&values[..out.len()]);
+        }
     }
 
     /// Gives the quantities with these numbers at many lateral displacements \[mm\] and yaws \[rad\], as many or one: `out` has the values of
@@ -225,6 +216,7 @@ impl ContactTable {
         for column in out.chunks_exact_mut(lateral.len().max(1)) {
             parts.iter_mut().zip(column.chunks_mut(TOGETHER)).for_each(|(part, piece)| part.push(piece));
         }
+        let arch = pulp::Arch::new();
         let parts = parts.into_par_iter().zip(lateral.par_chunks(TOGETHER)).enumerate();
         parts.for_each(|(k, (mut columns, lateral))| {
             let yaw = if let [one] = yaw {
@@ -232,24 +224,8 @@ impl ContactTable {
             } else {
                 &yaw[k * TOGETHER..][..lateral.len()]
             };
-            self.fill_columns(lateral, yaw, numbers, &mut columns);
+            arch.dispatch(Columns { table: self, lateral, yaw, numbers, columns: &mut columns });
         });
-    }
-
-    /// Fills a part of each column, by rows that stay in the nearest cache.
-    fn fill_columns(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], columns: &mut [&mut [f64]]) {
-        let mut rows = [[0.0; MOST]; ROWS];
-        let count = self.quantities.len();
-        for (k, lateral) in lateral.chunks(ROWS).enumerate() {
-            for (i, (row, y)) in rows.iter_mut().zip(lateral).enumerate() {
-                let yaw = if let [one] = yaw { *one } else { yaw[k * ROWS + i] };
-                self.fill(*y, yaw, &mut row[..count]);
-            }
-            for (column, &number) in columns.iter_mut().zip(numbers) {
-                let places = &mut column[k * ROWS..][..lateral.len()];
-                places.iter_mut().zip(&rows).for_each(|(place, row)| *place = row[number]);
-            }
-        }
     }
 
     /// Returns the numbers of the cells under a yaw \[rad\], in ascending order.
@@ -304,5 +280,48 @@ impl ContactTable {
     pub fn places(&self, kind: Beginning, yaw: f64) -> Vec<f64> {
         let cells = self.under(yaw).into_iter().skip(1);
         cells.filter(|cell| self.begins(*cell) == kind).map(|cell| self.ends(cell, yaw)[0]).collect()
+    }
+}
+
+/// Gives the number of coefficients in a row: that of the quantities, and what is missing to whole lanes.
+#[inline(always)]
+fn stride(quantities: &[Quantity]) -> usize {
+    quantities.len().next_multiple_of(LANES)
+}
+
+/// A part of each column. The work is compiled for each kind of machine.
+struct Columns<'p, 'c> {
+    table: &'p ContactTable,
+    lateral: &'p [f64],
+    yaw: &'p [f64],
+    numbers: &'p [usize],
+    columns: &'p mut [&'c mut [f64]],
+}
+
+impl pulp::WithSimd for Columns<'_, '_> {
+    type Output = ();
+
+    /// Goes from cell to cell: the coefficients of one over yaw, 12 kB, are then read from the nearest cache.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { table, lateral, yaw, numbers, columns } = self;
+        let mut order = Vec::with_capacity(lateral.len());
+        for (i, y) in lateral.iter().enumerate() {
+            let yaw = if let [one] = yaw { *one } else { yaw[i] };
+            order.push((table.cell(*y, yaw), i));
+        }
+        order.sort_unstable();
+        let mut row = [0.0; MOST];
+        let row = &mut row[..table.quantities.len()];
+        for (cell, i) in order {
+            let yaw = if let [one] = yaw { *one } else { yaw[i] };
+            match cell {
+                Some(cell) => table.fill_from(cell, lateral[i], yaw, row),
+                None => row.fill(f64::NAN),
+            }
+            for (column, &number) in columns.iter_mut().zip(numbers) {
+                column[i] = row[number];
+            }
+        }
     }
 }

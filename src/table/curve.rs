@@ -42,6 +42,7 @@ impl Curve {
     }
 
     /// Returns the displacement \[mm\] under a yaw \[rad\].
+    #[inline(always)]
     pub fn at(&self, yaw: f64) -> f64 {
         let u = share(self.yaw, yaw);
         self.coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
@@ -49,6 +50,7 @@ impl Curve {
 }
 
 /// Returns where a value is in an interval: −1 at its beginning, 1 at its end; 0 in one without width.
+#[inline(always)]
 pub(super) fn share([from, to]: [f64; 2], value: f64) -> f64 {
     if to > from { ((value - from) - (to - value)) / (to - from) } else { 0.0 }
 }

@@ -225,8 +225,28 @@ fn a_run_has_the_load_of_every_part() -> Result<()> {
     let text = wheelset(5.0, "[patch]\nload = 60000.0\n");
     let case = scene::resolve(&scene::parse(&text, false)?, Path::new("."), "loads")?;
     let run = Run::new(case, SILENT)?;
-    assert!(run.warnings().is_empty(), "{:?}", run.warnings());
+    assert!(run.warnings().iter().all(|text| text.contains(ROUGH)), "{:?}", run.warnings());
     assert!(run.parts.iter().all(|part| part.site.normal_load.is_some_and(|load| load > 0.0)));
+    Ok(())
+}
+
+/// What a run says of a grid that is too coarse for a solver.
+const ROUGH: &str = "on the cells of this grid a solver finds";
+
+#[test]
+fn a_run_says_what_the_cells_of_its_grid_do_to_the_largest_pressure() -> Result<()> {
+    for (grid, lost, warned) in [("", [0.09, 0.11], true), ("[grid]\nspacing = 0.1\n", [-1e-3, 1e-3], false)]
+    {
+        let text = format!(
+            "[rail]\nprofile = \"49E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"EN15302-A\"\nradius = 460.0\n[contact]\n\
+             offset = 3.23\n[patch]\nload = 20000.0\n{grid}"
+        );
+        let run = Run::new(scene::resolve(&scene::parse(&text, false)?, Path::new("."), "loads")?, SILENT)?;
+        let on_grid = run.parts[0].analysis.pressure.as_ref().and_then(|pressure| pressure.on_grid).unwrap();
+        let found = -on_grid.difference();
+        assert!(lost[0] < found && found < lost[1], "{grid}: {on_grid:?}");
+        assert_eq!(run.warnings().iter().any(|text| text.contains(ROUGH)), warned, "{:?}", run.warnings());
+    }
     Ok(())
 }
 

@@ -191,7 +191,7 @@ impl Patch {
     /// Solve the pressures over the grid of `axes(spacing)`, as of an elastic half-space without friction that this contact alone presses.
     ///
     /// `cell` in mm is the longest side of its cells: the grid's steps are divided by odd numbers. Without it they are divided by three,
-    /// or by nine where the largest pressure may then err by more than 2 %; `largest_error` says what is left of that.
+    /// or by nine where the largest pressure may then err by more than 1 %; `largest_error` says what is left of that.
     ///
     /// Raises InputError for an empty patch and a side that is not positive; LimitError for more than a million cells.
     #[pyo3(signature = (cell = None, *, spacing = None))]

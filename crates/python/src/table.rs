@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::PyArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{self, TABLE_FOLDER, write_table};
@@ -10,7 +10,7 @@ use wheelrail::files::{Folder, read_text};
 use wheelrail::table::Beginning;
 use wheelrail::{Error, scene};
 
-use crate::arrays::values;
+use crate::arrays::{unset, values};
 use crate::errors::{OrRaise, exception};
 use crate::long::{detached, waited};
 
@@ -122,9 +122,11 @@ impl ContactTable {
             return Err(exception(Error::new("quantities", found, "names of `errors`", "correct it")));
         }
         let numbers: Vec<usize> = (0..known.len()).filter(|q| wanted(known[*q].name)).collect();
-        let mut columns = vec![0.0; lateral.len() * numbers.len()];
-        detached(py, || self.table.fill_many(&lateral, &yaw, &numbers, &mut columns))?;
-        let columns = PyArray1::from_vec(py, columns).reshape([numbers.len(), lateral.len()])?;
+        let columns = unset(py, numbers.len(), lateral.len())?;
+        let mut filled = columns.readwrite();
+        let out = filled.as_slice_mut()?;
+        detached(py, || self.table.fill_many(&lateral, &yaw, &numbers, out))?;
+        drop(filled);
         self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
     }
 

@@ -1,8 +1,8 @@
 //! Compares approaches that `load` estimates with those that a boundary-element solver finds for the same regions: 60
 //! positions of five pairs, on treads, in flange roots, on flanges, with yaw, in two places at once.
 //!
-//! The solved approaches are the data of `data/loads.csv`. The tests of the program's clients compute them anew with
-//! Tamaas, and fail if they differ from the data.
+//! The solved approaches, largest pressures and contact areas are the data of `data/loads.csv`. The tests of the program's clients
+//! compute them anew with Tamaas, pressures and areas of every eighth region, and fail if they differ from the data.
 
 use super::speed::{LEAST_RUNS, Timing, race, timed};
 use super::whole_case;
@@ -60,8 +60,20 @@ pub struct Carried {
     pub loaded: Loaded,
     /// Placement, patch, normal force and estimate.
     pub site: Site,
-    /// δ \[mm\] that Tamaas finds for the same normal force; NaN if the data have none.
-    pub solved: f64,
+    /// What Tamaas finds for the same normal force: δ on cells three times as fine as those of the automatic grid, pressure and area on
+    /// cells nine times as fine. Not numbers if the data have none.
+    pub solved: Solved,
+}
+
+/// The solution of a region or a gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solved {
+    /// Largest pressure \[MPa\].
+    pub peak: f64,
+    /// δ \[mm\].
+    pub approach: f64,
+    /// Area in contact \[mm²\].
+    pub area: f64,
 }
 
 /// The error of one estimated approach.
@@ -88,6 +100,8 @@ pub struct LoadCost {
     pub approach: f64,
 }
 
+const NOTHING: Solved = Solved { peak: f64::NAN, approach: f64::NAN, area: f64::NAN };
+
 /// Pair and offset \[mm\] of the wheels that are timed: one place, two in one region, one place of noisy profiles, two regions.
 const TIMED: [(usize, f64); 4] = [(0, 0.0), (0, -3.0), (4, -1.5), (4, -3.0)];
 
@@ -112,9 +126,6 @@ pub fn costs(seconds: f64) -> Result<Vec<LoadCost>> {
     };
     TIMED.into_iter().map(cost).collect()
 }
-
-/// The normal force \[N\] and the solved δ \[mm\] of a row of the data.
-type Row = [f64; 2];
 
 impl Loaded {
     /// Resolves the case of this position over a pair.
@@ -163,7 +174,7 @@ impl Carried {
         ApproachError {
             region: self.loaded.key(self.contact()),
             joined: merged || parts > 1,
-            error: self.own_approach() / self.solved - 1.0,
+            error: self.own_approach() / self.solved.approach - 1.0,
         }
     }
 }
@@ -193,8 +204,8 @@ pub fn carried() -> Result<Vec<Carried>> {
         for [offset, yaw, load] in POSITIONS {
             let loaded = Loaded { pair: name, offset, yaw, load };
             for site in sites(&loaded.case(&pair)?)? {
-                let mut one = Carried { loaded, site, solved: f64::NAN };
-                one.solved = solved(&loaded.key(one.contact()))?.map_or(f64::NAN, |[_, approach]| approach);
+                let mut one = Carried { loaded, site, solved: NOTHING };
+                one.solved = solved(&loaded.key(one.contact()))?;
                 out.push(one);
             }
         }
@@ -202,14 +213,14 @@ pub fn carried() -> Result<Vec<Carried>> {
     Ok(out)
 }
 
-/// Returns the row of the data with this name; `None` if there is none.
-fn solved(key: &str) -> Result<Option<Row>> {
-    let row = SOLVED.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(','));
-    let bad = |row: &str| Error::new("loads.csv", row, "two numbers", "let the tests make it anew");
-    let number = |row: &str, cell: Option<&str>| cell.and_then(|c| c.parse().ok()).ok_or_else(|| bad(row));
-    row.map(|row| {
-        let mut cells = row.split(',');
-        Ok([number(row, cells.next())?, number(row, cells.next())?])
-    })
-    .transpose()
+/// Returns what the data have of the region with this name.
+fn solved(key: &str) -> Result<Solved> {
+    let Some(row) = SOLVED.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(',')) else {
+        return Ok(NOTHING);
+    };
+    let bad = || Error::new("loads.csv", row, "four numbers", "let the tests make it anew");
+    let numbers: std::result::Result<Vec<f64>, _> = row.split(',').map(str::parse).collect();
+    let numbers = numbers.map_err(|_| bad())?;
+    let [_, approach, peak, area] = numbers[..] else { return Err(bad()) };
+    Ok(Solved { peak, approach, area })
 }

@@ -18,5 +18,5 @@ def contact_area(pressed, steps):
 folder, modulus = pathlib.Path(sys.argv[1]), float(sys.argv[2])
 for region in sorted(path for path in folder.iterdir() if path.is_dir()):
     *steps, load = map(float, (region / "numbers.txt").read_text().split())
-    pressure, approach = traction(np.load(region / "separation.npy"), steps, modulus, load)
+    pressure, approach = traction(np.load(region / "separation.npy"), steps, modulus, load, 1e-7)
     print(region.name, repr(float(approach)), repr(float(pressure.max())), repr(contact_area(pressure > 0, steps)))

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use wheelrail::export::array_npy;
 use wheelrail::load::{Elastic, effective_modulus};
-use wheelrail_report::conformal::pairs::{ConformingPair, GAPS, HEADER, Solved, conforming_pairs};
+use wheelrail_report::conformal::pairs::{ConformingPair, GAPS, HEADER, conforming_pairs};
+use wheelrail_report::loads::Solved;
 use wheelrail_report::page::conforming_table;
 
 /// The page that holds the table.

@@ -3,7 +3,7 @@
 //! The pressures are the data of `data/conformal.csv`. The tests of the program's clients compute them anew with Tamaas, and
 //! fail if they differ from the data.
 
-use crate::loads::Loaded;
+use crate::loads::{Loaded, Solved};
 use crate::whole_case;
 use wheelrail::case::{Site, sites};
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
@@ -79,17 +79,6 @@ pub struct GapGrid {
     pub cosine: Vec<f64>,
     /// The gaps of [`GAPS`] \[mm\] at i_σ · n_η + i_η; NaN where undefined.
     pub gaps: [Vec<f64>; GAPS.len()],
-}
-
-/// The solution for one gap.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solved {
-    /// Largest pressure \[MPa\].
-    pub peak: f64,
-    /// δ \[mm\].
-    pub approach: f64,
-    /// Area in contact \[mm²\].
-    pub area: f64,
 }
 
 impl ConformingPair {

@@ -2,8 +2,9 @@
 
 use super::section::PageSection;
 use crate::conformal::GapScene;
-use crate::conformal::pairs::{ConformingPair, Solved};
+use crate::conformal::pairs::ConformingPair;
 use crate::conformal::values::{BOUNDS, GapBound, GapErrors};
+use crate::loads::Solved;
 use crate::measurements::Measurements;
 use crate::table::{markdown, normal_gap_csv};
 
