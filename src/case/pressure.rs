@@ -33,7 +33,7 @@ const ROUGH: f64 = 0.02;
 pub struct OnGrid {
     /// The largest pressure on these cells \[N/mm²\].
     pub largest: f64,
-    /// That on finer cells \[N/mm²\]: those of the pressures that were asked for, or else half as wide.
+    /// That on finer cells \[N/mm²\]: those of the pressures over the grid if their sides were not given, or else half as wide.
     pub finer: f64,
 }
 
@@ -98,7 +98,8 @@ impl PartPressure {
             None => Self::of_load(&site.contact, &site.grid)?,
         };
         let Some(mut found) = found.filter(|found| found.load > 0.0) else { return Ok(None) };
-        let finer = found.field.is_some().then_some(found.largest.pressure_n_per_mm2);
+        let own_cells = question.pressure.is_some_and(|asked| asked.cell.is_none());
+        let finer = own_cells.then_some(found.largest.pressure_n_per_mm2);
         found.on_grid = OnGrid::new(site, finer, modulus);
         Ok(Some(found))
     }
