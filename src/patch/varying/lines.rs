@@ -311,10 +311,10 @@ fn spread([low, high]: [f64; 2], out: &mut Vec<f64>) {
 
 /// Places in steps over an interval, with its ends; nearer to each other around 0 if that lies inside.
 fn places([from, to]: [f64; 2], step: f64) -> Vec<f64> {
-    let count = ((to - from) / step).ceil().max(1.0);
-    // Rounding would push the last one out of the interval.
-    let place = |k: usize| (from + (to - from) * k as f64 / count).min(to);
-    let mut out: Vec<f64> = (0..=count as usize).map(place).collect();
+    let count = ((to - from) / step).ceil().max(1.0) as usize;
+    let place = |k: usize| from + (to - from) * k as f64 / count as f64;
+    // The last one without rounding, which would push it out of the interval.
+    let mut out: Vec<f64> = (0..count).map(place).chain([to]).collect();
     out.push(0.0);
     out.extend((0..HALVINGS).flat_map(|k| [1.0, -1.0].map(|sign| sign * step * 0.5f64.powi(k))));
     out.retain(|place| (from..=to).contains(place));
@@ -333,7 +333,7 @@ mod tests {
             let ends = [-40.0 - 0.017 * f64::from(k), 15.0 + 0.0131 * f64::from(k)];
             let places = places(ends, STEP);
             assert_eq!([places[0], places[places.len() - 1]], ends);
-            assert!(places.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] <= STEP));
+            assert!(places.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] < STEP + 1e-12));
         }
     }
 }
