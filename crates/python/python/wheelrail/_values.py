@@ -133,7 +133,7 @@ class Pressure(_Value):
     """Pressures over a patch, of an elastic half-space: lengths in mm, pressures in N/mm2.
 
     >>> contact.patch(load=60e3).pressure()
-    Pressure(largest=1315, largest_error=2, contact_area=71.2, load=60179)
+    Pressure(largest=1315, largest_error=2, contact_area=70.8, load=60179)
     """
 
     xi: NDArray[np.float64]
