@@ -35,7 +35,7 @@ const FIRST_COUNT: usize = 4;
 /// of s: at and below [`crate::separation::FULL_PRECISION`] all digits near C are kept. Returns the largest truncation error
 /// \[mm\] that was measured meanwhile.
 ///
-/// With a body that varies every point is found by itself, and nothing is truncated.
+/// With a body that varies every point is computed by itself, and the error is 0.
 ///
 /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
 pub fn fill_normal_gap(
@@ -51,9 +51,9 @@ pub fn fill_normal_gap(
     }
     if gap.placement.lofted().is_some() {
         out.par_chunks_mut(length).zip(sigma).for_each(|(out, &sigma)| {
-            let mut line = gap.line(sigma);
+            let mut column = gap.column(sigma);
             for (t, &eta) in out.iter_mut().zip(axis.eta()) {
-                *t = line.as_mut().map_or(f64::NAN, |line| gap.gap_on(line, eta));
+                *t = column.as_mut().map_or(f64::NAN, |column| gap.gap_in(column, eta));
             }
         });
         return 0.0;

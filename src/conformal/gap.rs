@@ -8,14 +8,14 @@ use super::sight;
 use super::span::RayPoint;
 use crate::lofted::{Feet, FramedLoft, LoftFoot};
 use crate::placement::Placement;
-use crate::profile::Side;
 
 /// Number of equal steps in which the largest and least angle of a range are sought.
 const ANGLE_STEPS: usize = 128;
 
 /// Evaluates the normal gap over a placed pair. On a roller t is measured along the normals of its crown, the profile at η = 0: from
 /// the roller to the wheel. On a rail that varies along the track it is measured along those of the section through C, from the rail's
-/// surface; single points of bodies that vary take a millisecond, and more of one σ some microseconds.
+/// surface. With a body that varies a single point takes up to a millisecond, and every further one of the same [`GapColumn`] some
+/// microseconds.
 ///
 /// # Examples
 /// ```
@@ -63,13 +63,22 @@ pub struct GapPoint {
     pub wheel_normal: Option<Unit<Vector3<f64>>>,
 }
 
-/// A line of constant σ, with what one point of it knows for the next.
+/// The column of one σ, with what one of its points knows for the next.
 #[derive(Debug)]
-pub struct Line {
-    /// The rail's point and normal at η = 0.
+pub struct GapColumn {
+    /// The point and normal of the rail's profile.
     pub rail: RailPoint,
-    /// Feet along that normal on the body that varies; `None` where both are swept.
-    feet: Option<Feet<Box<FramedLoft>>>,
+    /// Feet along that normal on a wheel that varies; `None` on a wheel of revolution.
+    wheel: Option<Feet<Box<FramedLoft>>>,
+    /// Those on a rail that varies; `None` on one that is swept.
+    below: Option<Feet<Box<FramedLoft>>>,
+}
+
+/// The wheel's point on a line along the rail's normal.
+enum WheelPoint {
+    Round(RayPoint),
+    /// Seen along that normal.
+    Varying(LoftFoot),
 }
 
 impl<'a> NormalGap<'a> {
@@ -84,12 +93,15 @@ impl<'a> NormalGap<'a> {
         &self.rail
     }
 
-    /// Returns the line of constant σ \[mm\]; `None` beyond the rail's range.
-    pub fn line(&self, sigma: f64) -> Option<Line> {
+    /// Returns the column of σ \[mm\]; `None` beyond the rail's range.
+    pub fn column(&self, sigma: f64) -> Option<GapColumn> {
         let rail = self.rail.point(sigma)?;
-        let turned = |lofted: &FramedLoft| lofted.turned([rail.xi, rail.zeta], [rail.sin, rail.cos]);
-        let feet = self.placement.lofted().map(|lofted| Feet::new(Box::new(turned(lofted))));
-        Some(Line { rail, feet })
+        let feet = |body: Option<&FramedLoft>| {
+            let turned = body?.turned([rail.xi, rail.zeta], [rail.sin, rail.cos]);
+            Some(Feet::new(Box::new(turned)))
+        };
+        let (wheel, below) = (feet(self.placement.lofted_wheel()), feet(self.placement.lofted_rail()));
+        Some(GapColumn { rail, wheel, below })
     }
 
     /// Computes t(σ, η) \[mm\]: positive apart, negative where the bodies overlap, NaN beyond the rail's range of σ and
@@ -97,55 +109,51 @@ impl<'a> NormalGap<'a> {
     ///
     /// Method: the sagitta form along a line; see [`crate::docs::conformal`]. Accuracy: over both contact segments the error
     /// is below 1e-13 times the sum of the magnitudes of the terms of t; elsewhere below 2e-12 mm × max(1, R_max/300 mm).
-    /// Both are checked against 60-digit values. With a body that varies it is below 1e-11 mm. Cost: about half a microsecond.
+    /// Both are checked against 60-digit values. With a body that varies it is below 1e-10 mm. Cost: about half a microsecond.
     pub fn gap(&self, sigma: f64, eta: f64) -> f64 {
-        self.line(sigma).map_or(f64::NAN, |mut line| self.gap_on(&mut line, eta))
+        self.column(sigma).map_or(f64::NAN, |mut column| self.gap_in(&mut column, eta))
     }
 
-    /// Computes t \[mm\] at η \[mm\] of a line.
-    pub fn gap_on(&self, line: &mut Line, eta: f64) -> f64 {
-        match self.foot(line, eta) {
-            Some((Side::Wheel, foot)) => foot.map_or(f64::NAN, |foot| foot.zeta),
-            Some((Side::Rail, foot)) => foot.map_or(f64::NAN, |foot| self.above(&line.rail, eta) - foot.zeta),
-            None => {
-                let above = self.above(&line.rail, eta);
-                self.under.as_ref().map_or(above, |under| above + under.gap(line.rail.sigma, eta))
-            }
-        }
-    }
-
-    /// Computes ∂t/∂η at η \[mm\] of a line; NaN where t is.
-    pub fn slope_on(&self, line: &mut Line, eta: f64) -> f64 {
-        let above = |rail: &RailPoint| {
-            self.meeting(rail, eta).map_or(f64::NAN, |point| {
-                let normal = self.wheel_normal(&point);
-                normal.y / (rail.sin * normal.x - rail.cos * normal.z)
-            })
-        };
-        match self.foot(line, eta) {
-            Some((Side::Wheel, foot)) => foot.map_or(f64::NAN, |foot| foot.slopes[1]),
-            Some((Side::Rail, foot)) => foot.map_or(f64::NAN, |foot| above(&line.rail) - foot.slopes[1]),
-            None => {
-                let above = above(&line.rail);
-                self.under.as_ref().map_or(above, |under| above + under.slope(line.rail.sigma, eta))
-            }
-        }
+    /// Computes t \[mm\] at η \[mm\] of a column, as [`Self::gap`] does.
+    pub fn gap_in(&self, column: &mut GapColumn, eta: f64) -> f64 {
+        let above = self.wheel_point(column, eta).map_or(f64::NAN, |point| point.height());
+        above + self.below(column, eta)
     }
 
     /// Computes ∂t/∂η at one point; NaN where t is.
     pub fn slope(&self, sigma: f64, eta: f64) -> f64 {
-        self.line(sigma).map_or(f64::NAN, |mut line| self.slope_on(&mut line, eta))
+        self.column(sigma).map_or(f64::NAN, |mut column| self.slope_in(&mut column, eta))
     }
 
-    /// Finds the foot on the body that varies, and says which it is; `None` where both are swept.
-    fn foot(&self, line: &mut Line, eta: f64) -> Option<(Side, Option<LoftFoot>)> {
-        let feet = line.feet.as_mut()?;
-        Some((feet.body().side(), feet.at(0.0, eta)))
+    /// Computes ∂t/∂η at η \[mm\] of a column; NaN where t is.
+    pub fn slope_in(&self, column: &mut GapColumn, eta: f64) -> f64 {
+        let above = self.wheel_point(column, eta).map_or(f64::NAN, |point| {
+            let (rail, normal) = (&column.rail, self.wheel_normal(&column.rail, &point));
+            normal.y / (rail.sin * normal.x - rail.cos * normal.z)
+        });
+        let below = match (&mut column.below, &self.under) {
+            (Some(feet), _) => feet.at(0.0, eta).map_or(f64::NAN, |foot| -foot.slopes[1]),
+            (None, Some(under)) => under.slope(column.rail.sigma, eta),
+            (None, None) => 0.0,
+        };
+        above + below
     }
 
-    /// Computes the height \[mm\] of a wheel of revolution over the rail's point, along its normal.
-    fn above(&self, rail: &RailPoint, eta: f64) -> f64 {
-        self.meeting(rail, eta).map_or(f64::NAN, |point| point.t)
+    /// Finds the wheel's point on the line along the normal; `None` where it misses.
+    fn wheel_point(&self, column: &mut GapColumn, eta: f64) -> Option<WheelPoint> {
+        match &mut column.wheel {
+            Some(feet) => feet.at(0.0, eta).map(WheelPoint::Varying),
+            None => sight::point(&self.bodies.ray(&column.rail, eta)).map(WheelPoint::Round),
+        }
+    }
+
+    /// Computes how far the lower body lies below the profile of the column along its normal \[mm\]; NaN where it has no surface.
+    fn below(&self, column: &mut GapColumn, eta: f64) -> f64 {
+        match (&mut column.below, &self.under) {
+            (Some(feet), _) => -feet.height(0.0, eta),
+            (None, Some(under)) => under.gap(column.rail.sigma, eta),
+            (None, None) => 0.0,
+        }
     }
 
     /// Returns α(σ) \[rad\], the angle of the rail's outward normal from ζ, positive counter-clockwise; NaN beyond the range of
@@ -164,45 +172,45 @@ impl<'a> NormalGap<'a> {
 
     /// Computes everything at one point; `None` beyond the rail's range of σ.
     pub fn point(&self, sigma: f64, eta: f64) -> Option<GapPoint> {
-        self.line(sigma).map(|mut line| self.point_on(&mut line, eta))
+        let mut column = self.column(sigma)?;
+        let (met, below, rail) =
+            (self.wheel_point(&mut column, eta), self.below(&mut column, eta), column.rail);
+        Some(GapPoint {
+            rail,
+            gap: met.as_ref().map_or(f64::NAN, WheelPoint::height) + below,
+            below,
+            over_contact: matches!(&met, Some(WheelPoint::Round(point)) if point.over_contact),
+            rail_normal: Unit::new_unchecked(Vector3::new(-rail.sin, 0.0, rail.cos)),
+            wheel_normal: met.map(|point| self.wheel_normal(&rail, &point)),
+        })
     }
 
-    /// Computes everything at η \[mm\] of a line.
-    pub fn point_on(&self, line: &mut Line, eta: f64) -> GapPoint {
-        let (foot, rail) = (self.foot(line, eta), line.rail);
-        let met = self.meeting(&rail, eta);
-        let over_contact = foot.is_none() && met.is_some_and(|met| met.over_contact);
-        let (above, below, wheel_normal) = match foot {
-            Some((Side::Wheel, foot)) => {
-                let normal = foot.map(|foot| {
-                    let down = -foot.normal();
-                    let xi = rail.cos * down.x - rail.sin * down.z;
-                    Unit::new_unchecked(Vector3::new(xi, down.y, rail.sin * down.x + rail.cos * down.z))
-                });
-                (foot.map_or(f64::NAN, |foot| foot.zeta), 0.0, normal)
+    /// Computes the wheel's outward unit normal (ξ, η, ζ) at its point on a line along the rail's normal.
+    fn wheel_normal(&self, rail: &RailPoint, point: &WheelPoint) -> Unit<Vector3<f64>> {
+        let normal = match point {
+            WheelPoint::Round(point) => {
+                let wheel = &self.bodies.wheel;
+                let tangent = wheel.section.branches[point.branch].station(point.abscissa);
+                let own = wheel.normal_at(&tangent, point.w, point.eta);
+                let turned = self.placement.skew_rotation() * Vector2::new(own.x, own.y);
+                Vector3::new(turned.x, turned.y, own.z)
             }
-            varying => {
-                let below = match varying {
-                    Some((_, foot)) => foot.map_or(f64::NAN, |foot| -foot.zeta),
-                    None => self.under.as_ref().map_or(0.0, |under| under.gap(rail.sigma, eta)),
-                };
-                (met.map_or(f64::NAN, |met| met.t), below, met.map(|point| self.wheel_normal(&point)))
+            WheelPoint::Varying(foot) => {
+                let down = -foot.normal();
+                let xi = rail.cos * down.x - rail.sin * down.z;
+                Vector3::new(xi, down.y, rail.sin * down.x + rail.cos * down.z)
             }
         };
-        let rail_normal = Unit::new_unchecked(Vector3::new(-rail.sin, 0.0, rail.cos));
-        GapPoint { rail, gap: above + below, below, over_contact, rail_normal, wheel_normal }
+        Unit::new_unchecked(normal)
     }
+}
 
-    fn meeting(&self, rail: &RailPoint, eta: f64) -> Option<RayPoint> {
-        sight::point(&self.bodies.ray(rail, eta))
-    }
-
-    /// Computes the wheel's outward unit normal (ξ, η, ζ) at a point of a ray.
-    fn wheel_normal(&self, point: &RayPoint) -> Unit<Vector3<f64>> {
-        let wheel = &self.bodies.wheel;
-        let tangent = wheel.section.branches[point.branch].station(point.abscissa);
-        let own = wheel.normal_at(&tangent, point.w, point.eta);
-        let turned = self.placement.skew_rotation() * Vector2::new(own.x, own.y);
-        Unit::new_unchecked(Vector3::new(turned.x, turned.y, own.z))
+impl WheelPoint {
+    /// Its height over the rail's point along the rail's normal \[mm\].
+    fn height(&self) -> f64 {
+        match self {
+            Self::Round(point) => point.t,
+            Self::Varying(foot) => foot.zeta,
+        }
     }
 }

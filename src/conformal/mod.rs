@@ -26,5 +26,5 @@ mod span;
 
 pub use arc_length::{RailArcLength, RailPoint};
 pub use columns::fill_normal_gap;
-pub use gap::{GapPoint, Line, NormalGap};
+pub use gap::{GapColumn, GapPoint, NormalGap};
 pub use reference::Reference;

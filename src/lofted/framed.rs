@@ -65,8 +65,8 @@ pub struct FramedLoft {
     levels: Vec<OnceLock<Vec<Run>>>,
     /// Number of the first section, in steps from C.
     first: i64,
-    /// Distance from ξ = 0 within which feet are asked for \[mm\].
-    beside: f64,
+    /// Whether it is seen along a normal of the other body: feet are asked for at ξ = 0 alone.
+    along_normal: bool,
     /// The tangent plane at C.
     plane: Section,
 }
@@ -160,7 +160,7 @@ impl FramedLoft {
         let [from, to] = loft.reach().map(|y| (y - along).clamp(-farthest, farthest) / LEVEL);
         let (first, last) = (from.floor() as i64, to.ceil() as i64);
         let levels = (first..=last).map(|_| OnceLock::new()).collect();
-        Self { loft, laid, origin, axes, along, levels, first, beside: f64::INFINITY, plane }
+        Self { loft, laid, origin, axes, along, levels, first, along_normal: false, plane }
     }
 
     /// Looks at the body from the point (ξ, 0, ζ) \[mm\] of the frame along a normal that leans by α about η: it is (−sin α, 0, cos α).
@@ -176,7 +176,7 @@ impl FramedLoft {
         };
         let axes = [mixed(cos, sin), ahead, mixed(-sin, cos)];
         let body = (Arc::clone(&self.loft), self.laid);
-        Self { beside: 0.0, ..Self::looking(body, (origin, axes), along, self.plane.clone()) }
+        Self { along_normal: true, ..Self::looking(body, (origin, axes), along, self.plane.clone()) }
     }
 
     /// Which body it is.
@@ -272,8 +272,8 @@ impl FramedLoft {
                 }
             }
         }
-        if self.beside.is_finite() {
-            // What the line meets far behind the point that it begins at is on the other side of that body.
+        if self.along_normal {
+            // What the normal meets far behind its foot is on the other side of the body that it is of.
             let outward = if self.side() == Side::Rail { 1.0 } else { -1.0 };
             feet.retain(|foot| outward * foot.zeta <= FLANGEWAY);
         }
@@ -382,7 +382,7 @@ impl FramedLoft {
     fn level(&self, level: i64) -> &[Run] {
         let Ok(index) = usize::try_from(level - self.first) else { return &[] };
         let (y, xi) = (self.along + LEVEL * level as f64, |at: [f64; 2], y: f64| self.seen_from(at, y)[0]);
-        let made = || runs(&self.loft, xi, y, self.beside);
+        let made = || runs(&self.loft, xi, y, self.along_normal);
         self.levels.get(index).map_or(&[], |runs| runs.get_or_init(made))
     }
 }

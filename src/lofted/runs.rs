@@ -20,9 +20,9 @@ pub(super) struct Run {
     pub xi: Vec<f64>,
 }
 
-/// Finds the runs in the section at y \[mm\], as far as feet are asked for from them within a distance \[mm\] of ξ = 0; `xi` gives that of
-/// a point \[x, z\] of a section at y.
-pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, within: f64) -> Vec<Run> {
+/// Finds the runs in the section at y \[mm\]; of those `beside` ξ = 0 alone what feet there are sought from. `xi` gives the coordinate
+/// \[mm\] of a point \[x, z\] of a section at y.
+pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, beside: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (strip, own) in loft.strips.iter().enumerate() {
         let [from, to] = own.reach();
@@ -31,7 +31,9 @@ pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, withi
             continue;
         }
         let y = y.clamp(from, to);
-        for cells in cells_beside(&xi, own, y, within) {
+        let cells =
+            if beside { cells_beside(&xi, own, y) } else { std::iter::once(0..own.cells()).collect() };
+        for cells in cells {
             let mut open = false;
             for node in cells.start..=cells.end {
                 let xi = xi(own.point(node as f64, y).at, y);
@@ -47,14 +49,10 @@ pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, withi
     runs
 }
 
-/// Lists the cells of a strip at y \[mm\] that may lie in a run from which feet are sought, as stretches in order.
-fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64, within: f64) -> Vec<Range<usize>> {
-    let (interval, farthest) = (strip.interval_at(y), within + 2.0 * BESIDE + strip.off());
+/// Lists the cells of a strip at y \[mm\] that may lie in a run from which feet at ξ = 0 are sought, as stretches in order.
+fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64) -> Vec<Range<usize>> {
+    let (interval, farthest) = (strip.interval_at(y), 2.0 * BESIDE + strip.off());
     let (mut found, mut waiting): (Vec<Range<usize>>, _) = (Vec::new(), vec![1]);
-    if within.is_infinite() {
-        found.push(0..strip.cells());
-        return found;
-    }
     while let Some(node) = waiting.pop() {
         let (cells, [x, z]) = (interval.cells(node), interval.bounds(node));
         let corners = x.into_iter().flat_map(|x| z.map(|z| xi([x, z], y)));

@@ -6,7 +6,6 @@
 
 use super::level::Level;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS};
-use crate::conformal::NormalGap;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
 
@@ -16,7 +15,7 @@ const WIDER: f64 = 1.25;
 /// The slices of a placed pair at one approach.
 #[derive(Debug)]
 pub(super) struct ByRoots<'a> {
-    gap: Level<'a>,
+    pub(super) level: Level<'a>,
     /// Whether the lowest place along η may be off η = 0.
     skewed: bool,
     /// Approach δ \[mm\].
@@ -28,36 +27,11 @@ pub(super) struct ByRoots<'a> {
 }
 
 impl<'a> ByRoots<'a> {
-    /// Makes the slices of a placed pair over its tangent plane; `None` on a rail.
-    pub(super) fn on_roller(placement: &'a Placement, approach: f64) -> Option<Self> {
-        placement.under()?;
-        Some(Self::new(Level::plane(placement), placement, approach))
-    }
-
-    /// Makes the slices of a placed pair over the rail's surface.
-    pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
-        Self::new(Level::over_rail(placement, approach), placement, approach)
-    }
-
-    fn new(gap: Level<'a>, placement: &Placement, approach: f64) -> Self {
+    /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
+    pub(super) fn new(placement: &Placement, approach: f64, level: Level<'a>) -> Self {
         let around = placement.rolling_radius().recip() + placement.rail().axle_distance().recip();
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
-        Self { gap, skewed: placement.skew() != 0.0, approach, opening: 0.5 * around, step }
-    }
-
-    /// Returns the normal gap of slices over the rail's surface; `None` for those over the tangent plane.
-    pub(super) fn normal_gap(&self) -> Option<&NormalGap<'a>> {
-        self.gap.normal_gap()
-    }
-
-    /// Returns the gap \[mm\]; NaN where a body has no surface.
-    pub(super) fn gap(&mut self, xi: f64, eta: f64) -> f64 {
-        self.gap.gap(xi, eta)
-    }
-
-    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap.
-    pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        self.gap.gradient(xi, eta)
+        Self { level, skewed: placement.skew() != 0.0, approach, opening: 0.5 * around, step }
     }
 
     /// Returns η \[mm\] of the least gap at ξ; NaN where a body has no surface.
@@ -65,31 +39,31 @@ impl<'a> ByRoots<'a> {
         if !self.skewed {
             return 0.0;
         }
-        let at_middle = self.gap.slope(xi, 0.0);
+        let at_middle = self.level.slope(xi, 0.0);
         if at_middle == 0.0 || at_middle.is_nan() {
             return 0.0 * at_middle;
         }
         let (mut near, mut far) = (0.0, -at_middle / self.opening);
-        while self.gap.slope(xi, far) * at_middle > 0.0 {
+        while self.level.slope(xi, far) * at_middle > 0.0 {
             (near, far) = (far, WIDER * far);
         }
-        if self.gap.slope(xi, far).is_nan() {
-            far = last_where(|eta| !self.gap.slope(xi, eta).is_nan(), near, far);
+        if self.level.slope(xi, far).is_nan() {
+            far = last_where(|eta| !self.level.slope(xi, eta).is_nan(), near, far);
         }
         // Without a root the gap falls up to the end of the surface.
-        bracketed(|eta| self.gap.slope(xi, eta), near, far).unwrap_or(far)
+        bracketed(|eta| self.level.slope(xi, eta), near, far).unwrap_or(far)
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.
     pub(super) fn depth(&mut self, xi: f64) -> f64 {
         let eta = self.lowest(xi);
-        self.gap.gap(xi, eta) - self.approach
+        self.level.gap(xi, eta) - self.approach
     }
 
     /// Returns both ends of the slice at ξ; `None` outside the patch.
     pub(super) fn edges(&mut self, xi: f64) -> Option<[Edge; 2]> {
         let lowest = self.lowest(xi);
-        let depth = self.approach - self.gap.gap(xi, lowest);
+        let depth = self.approach - self.level.gap(xi, lowest);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
@@ -103,7 +77,7 @@ impl<'a> ByRoots<'a> {
     /// Returns the end of a slice on one side of its lowest place, to which `reach` \[mm\] leads.
     fn edge(&mut self, xi: f64, lowest: f64, reach: f64) -> Edge {
         let approach = self.approach;
-        let mut miss = |eta: f64| self.gap.gap(xi, eta) - approach;
+        let mut miss = |eta: f64| self.level.gap(xi, eta) - approach;
         if reach == 0.0 {
             return Edge { eta: lowest, ledge: false };
         }

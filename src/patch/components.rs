@@ -10,6 +10,7 @@ use super::plain;
 use super::skewed::lanes;
 use super::slice::Slice;
 use super::varying;
+use crate::conformal::Reference;
 use crate::placement::Placement;
 
 /// Number of points on each of the two sides of a loop. The polygon then lies within 1e-4 of the patch's width of the
@@ -88,10 +89,10 @@ impl Patch {
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
     /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
     /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
-    /// On a rail that varies along the track a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
+    /// Where a body varies a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
     /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
-        Self::of(Outline::new(placement, approach, window))
+        Self::of(Outline::new(placement, approach, window, Reference::Plane))
     }
 
     /// Finds all components of the conformal patch {t < δ cos α} over the rail's surface, inside a window of σ and η: wherever this type
@@ -100,9 +101,9 @@ impl Patch {
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part may be missed
     /// between two turns of the least gap along σ that lie within 1/512 of the searched σ, which is the window's range or the
     /// rail's surface where that is shorter; under skew so may a second interval of η at one σ. Approaches of the size of the bodies
-    /// take seconds.
+    /// take seconds. Where a body varies a part is missed as in [`Self::new`].
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
-        Self::of(Outline::over_rail(placement, approach, window))
+        Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }
 
     fn of(mut outline: Outline<'_>) -> Self {

@@ -1,6 +1,6 @@
 //! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
 
-use crate::conformal::{Line, NormalGap, RailPoint};
+use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
@@ -19,20 +19,18 @@ pub(super) enum Level<'a> {
         gap: NormalGap<'a>,
         /// δ \[mm\].
         approach: f64,
-        /// The line of the last point.
-        line: Option<Line>,
+        /// The column of the last point.
+        column: Option<GapColumn>,
     },
 }
 
 impl<'a> Level<'a> {
-    /// Makes that over the tangent plane.
-    pub(super) fn plane(placement: &'a Placement) -> Self {
-        Self::Plane(Evaluator::new(placement))
-    }
-
-    /// Makes that over the rail's surface, for an approach δ \[mm\].
-    pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
-        Self::Rail { gap: NormalGap::new(placement), approach, line: None }
+    /// Makes that of a placed pair over a surface, for an approach δ \[mm\].
+    pub(super) fn new(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
+        match reference {
+            Reference::Plane => Self::Plane(Evaluator::new(placement)),
+            Reference::Rail => Self::Rail { gap: NormalGap::new(placement), approach, column: None },
+        }
     }
 
     /// Returns the normal gap over the rail's surface; `None` over the tangent plane.
@@ -47,10 +45,10 @@ impl<'a> Level<'a> {
     pub(super) fn gap(&mut self, xi: f64, eta: f64) -> f64 {
         match self {
             Self::Plane(evaluator) => evaluator.separation(xi, eta),
-            Self::Rail { gap, approach, line } => on_line(gap, line, xi).map_or(f64::NAN, |line| {
+            Self::Rail { gap, approach, column } => known(gap, column, xi).map_or(f64::NAN, |column| {
                 // 1 − cos α without a difference of nearly equal numbers.
-                let RailPoint { cos, sin, .. } = line.rail;
-                gap.gap_on(line, eta) + *approach * (sin * sin / (1.0 + cos))
+                let RailPoint { cos, sin, .. } = column.rail;
+                gap.gap_in(column, eta) + *approach * (sin * sin / (1.0 + cos))
             }),
         }
     }
@@ -73,17 +71,21 @@ impl<'a> Level<'a> {
     pub(super) fn slope(&mut self, xi: f64, eta: f64) -> f64 {
         match self {
             Self::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1[1],
-            Self::Rail { gap, line, .. } => {
-                on_line(gap, line, xi).map_or(f64::NAN, |line| gap.slope_on(line, eta))
+            Self::Rail { gap, column, .. } => {
+                known(gap, column, xi).map_or(f64::NAN, |column| gap.slope_in(column, eta))
             }
         }
     }
 }
 
-/// Takes the last line if it is that of σ.
-fn on_line<'l>(gap: &NormalGap<'_>, line: &'l mut Option<Line>, sigma: f64) -> Option<&'l mut Line> {
-    if line.as_ref().is_none_or(|line| line.rail.sigma != sigma) {
-        *line = gap.line(sigma);
+/// Takes the last column if it is that of σ \[mm\].
+fn known<'c>(
+    gap: &NormalGap<'_>,
+    column: &'c mut Option<GapColumn>,
+    sigma: f64,
+) -> Option<&'c mut GapColumn> {
+    if column.as_ref().is_none_or(|column| column.rail.sigma != sigma) {
+        *column = gap.column(sigma);
     }
-    line.as_mut()
+    column.as_mut()
 }

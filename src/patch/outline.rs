@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::skewed::circle::{BESIDE, Turned};
 use super::skewed::slicer::Edge;
 use super::slice::Slicer;
+use crate::conformal::Reference;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
@@ -53,14 +54,9 @@ pub struct Outline<'a> {
 }
 
 impl<'a> Outline<'a> {
-    /// Makes the outline of a placed pair's patch at approach δ \[mm\] inside a window.
-    pub fn new(placement: &'a Placement, approach: f64, window: &Window) -> Self {
-        Self { slicer: Slicer::new(placement, approach), window: *window }
-    }
-
-    /// Makes the outline of a placed pair's patch over the rail's surface, inside a window of σ and η.
-    pub(super) fn over_rail(placement: &'a Placement, approach: f64, window: &Window) -> Self {
-        Self { slicer: Slicer::over_rail(placement, approach), window: *window }
+    /// Makes the outline of a placed pair's patch at approach δ \[mm\] inside a window of ξ and η, or over the rail's surface of σ and η.
+    pub fn new(placement: &'a Placement, approach: f64, window: &Window, reference: Reference) -> Self {
+        Self { slicer: Slicer::over(placement, approach, reference), window: *window }
     }
 
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`. Returns `None` outside the patch

@@ -2,6 +2,7 @@
 
 use super::band::{Band, Turn, steps};
 use super::outline::{End, Outline, Window};
+use crate::conformal::Reference;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 use crate::placement::Placement;
@@ -75,7 +76,7 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
 /// Finds \[s, ξ, η\] \[mm\] of the least s of a wheel on a roller; `None` where the bodies nowhere lie over each other.
 pub(crate) fn least_on_roller(placement: &Placement) -> Option<[f64; 3]> {
     let [a, b] = placement.rail().section.reach()?;
-    let mut outline = Outline::new(placement, 0.0, &Window::UNBOUNDED);
+    let mut outline = Outline::new(placement, 0.0, &Window::UNBOUNDED, Reference::Plane);
     // C comes first: rounding may put a turn next to it.
     let places = std::iter::once(0.0).chain(turns_of_depth(&mut outline, a, b));
     let found: Vec<_> =

@@ -7,6 +7,7 @@ use super::by_roots::ByRoots;
 use super::level::Level;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use super::varying::Varying;
+use crate::conformal::Reference;
 use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
 use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
@@ -43,11 +44,11 @@ pub struct Slicer<'a> {
     wheel: Surface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// The slices of a wheel on a roller, or over the rail's surface; `None` over the tangent plane of a rail.
+    /// The slices of swept bodies on a roller, or over the rail's surface; `None` over the tangent plane of a rail.
     pub(super) by_roots: Option<ByRoots<'a>>,
     /// The slices under a skewed wheel on a rail; `None` without skew.
     pub(super) skewed: Option<Skewed<'a>>,
-    /// The slices on a rail that varies along the track; `None` on a swept one.
+    /// The slices where a body varies; `None` where both are swept.
     pub(super) varying: Option<Varying<'a>>,
     approach: f64,
 }
@@ -55,31 +56,41 @@ pub struct Slicer<'a> {
 impl<'a> Slicer<'a> {
     /// Makes a slicer for approach δ \[mm\].
     pub fn new(placement: &'a Placement, approach: f64) -> Self {
+        Self::over(placement, approach, Reference::Plane)
+    }
+
+    /// Makes a slicer of the patch over the tangent plane or over the rail's surface, where ξ is σ, and s is t(σ, η) + δ (1 − cos α).
+    pub(super) fn over(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
+        let level = || Level::new(placement, approach, reference);
+        let (varies, on_roller) = (placement.lofted().is_some(), placement.under().is_some());
+        let by_roots = !varies && (on_roller || reference == Reference::Rail);
+        let skewed = !varies && !by_roots && placement.skew() != 0.0;
         Self {
             placement,
             wheel: Surface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            by_roots: ByRoots::on_roller(placement, approach),
-            skewed: (placement.skew() != 0.0 && placement.under().is_none() && placement.lofted().is_none())
-                .then(|| Skewed::new(placement, approach)),
-            varying: placement.lofted().map(|_| Varying::new(placement, approach, Level::plane(placement))),
+            by_roots: by_roots.then(|| ByRoots::new(placement, approach, level())),
+            skewed: skewed.then(|| Skewed::new(placement, approach)),
+            varying: varies.then(|| Varying::new(placement, approach, level())),
             approach,
         }
     }
 
-    /// Makes a slicer of the patch over the rail's surface: ξ is σ, and the gap is t(σ, η) + δ (1 − cos α).
-    pub(super) fn over_rail(placement: &'a Placement, approach: f64) -> Self {
-        let by_roots = Some(ByRoots::over_rail(placement, approach));
-        let level = || Level::over_rail(placement, approach);
-        let varying = placement.lofted().map(|_| Varying::new(placement, approach, level()));
-        Self { by_roots, skewed: None, varying, ..Self::new(placement, approach) }
+    /// Returns the gap whose level bounds the patch; `None` where it is s over the tangent plane of swept bodies on a rail.
+    fn level(&self) -> Option<&Level<'a>> {
+        let of_roots = || self.by_roots.as_ref().map(|by_roots| &by_roots.level);
+        self.varying.as_ref().map(|varying| &varying.level).or_else(of_roots)
+    }
+
+    fn level_mut(&mut self) -> Option<&mut Level<'a>> {
+        let of_roots = self.by_roots.as_mut().map(|by_roots| &mut by_roots.level);
+        self.varying.as_mut().map(|varying| &mut varying.level).or(of_roots)
     }
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
     pub(super) fn reach(&self) -> Option<[f64; 2]> {
-        let over_rail = self.by_roots.as_ref().and_then(ByRoots::normal_gap);
-        match over_rail {
+        match self.level().and_then(Level::normal_gap) {
             Some(gap) => gap.rail().reach(),
             None if self.placement.skew() == 0.0 => self.placement.overlap(),
             // A skewed wheel lies over another part of a roller.
@@ -93,8 +104,7 @@ impl<'a> Slicer<'a> {
             // Its cells' sides are no lines of constant ξ.
             return Vec::new();
         }
-        let over_rail = self.by_roots.as_ref().and_then(ByRoots::normal_gap);
-        let joints = match over_rail {
+        let joints = match self.level().and_then(Level::normal_gap) {
             Some(gap) => gap.rail().joints(),
             None => self.placement.rail().section.joints([a, b]).map(|(xi, _)| xi).collect(),
         };
@@ -103,7 +113,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns whether ξ is the arc length of the rail's surface.
     pub(super) fn is_over_rail(&self) -> bool {
-        self.by_roots.as_ref().is_some_and(|by_roots| by_roots.normal_gap().is_some())
+        self.level().and_then(Level::normal_gap).is_some()
     }
 
     /// Returns the approach δ \[mm\].
@@ -247,18 +257,18 @@ impl<'a> Slicer<'a> {
 
     /// Returns \[∂s/∂ξ, ∂s/∂η\].
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        if let Some(by_roots) = &mut self.by_roots {
-            return by_roots.gradient(xi, eta);
+        match self.level_mut() {
+            Some(level) => level.gradient(xi, eta),
+            None => self.evaluator.separation_and_gradient(xi, eta).1,
         }
-        self.evaluator.separation_and_gradient(xi, eta).1
     }
 
     /// Returns s(ξ, η) \[mm\].
     pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
-        if let Some(by_roots) = &mut self.by_roots {
-            return by_roots.gap(xi, eta);
+        match self.level_mut() {
+            Some(level) => level.gap(xi, eta),
+            None => self.evaluator.separation(xi, eta),
         }
-        self.evaluator.separation(xi, eta)
     }
 
     /// Returns the placed pair.

@@ -44,19 +44,23 @@ pub(super) fn random_position(random: &mut Random) -> [f64; 3] {
     [random.between(-6.0, 6.0), random.between(-0.02, 0.02), random.between(-0.004, 0.004)]
 }
 
-#[test]
-fn a_radius_that_does_not_vary_has_the_separation_and_patch_of_the_round_wheel() -> Result<()> {
+/// A wheel whose radius does not vary at a random position, and the round wheel that it is.
+pub(super) fn round_wheels(random: &mut Random) -> Result<[Placement; 2]> {
     let (profile, rail) = (standards::wheel("S1002")?, standards::rail("60E1")?);
     let wheel = LoftedWheel::out_of_round(&profile, RADIUS, &[[-2.0, 0.0], [1.0, 0.0]])?;
-    let body = LoftedBody::Wheel(Arc::new(wheel.clone()));
-    let pair = Pair::new(rail.clone(), profile, RADIUS)?;
+    let [lateral, yaw, roll] = random_position(random);
+    let march = turning(&wheel, &rail, position(lateral, yaw, roll), 0.0)?;
+    let contact = of_right(&march.turned(random.between(-7.0, 7.0))?)?.contact;
+    let pair = Pair::new(rail, profile, RADIUS)?;
+    Ok([contact.placed_on(&pair, &LoftedBody::Wheel(Arc::new(wheel)), 0.0)?, contact.placed(&pair)?])
+}
+
+#[test]
+fn a_radius_that_does_not_vary_has_the_separation_and_patch_of_the_round_wheel() -> Result<()> {
     let mut random = Random::new(350);
     let mut alike = 0;
-    for _ in 0..scenes().div_ceil(8) {
-        let [lateral, yaw, roll] = random_position(&mut random);
-        let march = turning(&wheel, &rail, position(lateral, yaw, roll), 0.0)?;
-        let contact = of_right(&march.turned(random.between(-7.0, 7.0))?)?.contact;
-        let (lofted, round) = (contact.placed_on(&pair, &body, 0.0)?, contact.placed(&pair)?);
+    for scene in 0..scenes().div_ceil(8) {
+        let [lofted, round] = round_wheels(&mut random)?;
         let (mut own, mut other) = (Evaluator::new(&lofted), Evaluator::new(&round));
         for _ in 0..100 {
             let at = [random.between(-12.0, 12.0), random.between(-20.0, 20.0)];
@@ -67,9 +71,9 @@ fn a_radius_that_does_not_vary_has_the_separation_and_patch_of_the_round_wheel()
             }
             // A steep surface is off along its normal.
             let steep = 1.0 + other.separation_and_gradient(at[0], at[1]).1[0].abs();
-            assert!((found - expected).abs() < 1e-10 * steep, "{contact:?} {at:?}: {found} {expected}");
+            assert!((found - expected).abs() < 1e-10 * steep, "scene {scene} {at:?}: {found} {expected}");
             let [a, b] = [own.normals(at[0], at[1]), other.normals(at[0], at[1])].map(|n| n.wheel.unwrap());
-            assert!((*a - *b).norm() < 1e-9, "{contact:?} {at:?}: {a:?} {b:?}");
+            assert!((*a - *b).norm() < 1e-9, "scene {scene} {at:?}: {a:?} {b:?}");
             alike += 1;
         }
         let [a, b] = [curvatures(&lofted), curvatures(&round)];
@@ -82,11 +86,11 @@ fn a_radius_that_does_not_vary_has_the_separation_and_patch_of_the_round_wheel()
             [c.longitudinal, c.lateral, RADIUS * c.spin, RADIUS * c.turn[0], RADIUS * c.turn[1]]
         };
         for (found, expected) in slips(&c).into_iter().zip(slips(&d)) {
-            assert!((found - expected).abs() < 1e-9, "{contact:?}: {c:?} {d:?}");
+            assert!((found - expected).abs() < 1e-9, "scene {scene}: {c:?} {d:?}");
         }
         let [area, expected] =
             [&lofted, &round].map(|placement| Patch::new(placement, 0.05, &Window::UNBOUNDED).area());
-        assert!((area / expected - 1.0).abs() < 1e-7, "{contact:?}: {area} {expected}");
+        assert!((area / expected - 1.0).abs() < 1e-7, "scene {scene}: {area} {expected}");
     }
     assert!(alike > 90 * scenes().div_ceil(8), "{alike}");
     Ok(())

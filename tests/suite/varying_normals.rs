@@ -6,17 +6,14 @@ use std::sync::Arc;
 use wheelrail::conformal::NormalGap;
 use wheelrail::error::Result;
 use wheelrail::lofted::{Flat, Joining, Loft, LoftedBody, LoftedWheel};
-use wheelrail::{
-    Evaluator, ONE_CONTACT, Pair, Patch, Placement, Pose, ProfilePair, Selection, Window, standards,
-};
+use wheelrail::{Evaluator, ONE_CONTACT, Pair, Patch, Placement, Pose, ProfilePair, Selection, Window};
 use wheelrail_check::check_site;
 use wheelrail_report::random::Random;
 
 use super::along_track::{RADIUS, slices};
-use super::around_the_wheel::{of_right, position, turning};
 use super::campaign::scenes;
 use super::over_slices::{crown, cylinder, flooded, on_crown, run as crossing};
-use super::turned_wheels::{cone, placed, random_position, run as flat};
+use super::turned_wheels::{cone, placed, random_position, round_wheels, run as flat};
 
 /// Holds both ends of the normals' lines against the heights of the surfaces over the tangent plane, at random places up to `farthest`
 /// \[mm\] from C. Returns how many were held.
@@ -79,16 +76,10 @@ fn are_alike([varying, swept]: [&Placement; 2], random: &mut Random) -> usize {
 
 #[test]
 fn a_wheel_whose_radius_does_not_vary_has_the_normal_gap_of_the_round_one() -> Result<()> {
-    let (profile, rail) = (standards::wheel("S1002")?, standards::rail("60E1")?);
-    let wheel = LoftedWheel::out_of_round(&profile, RADIUS, &[[-2.0, 0.0], [1.0, 0.0]])?;
-    let body = LoftedBody::Wheel(Arc::new(wheel.clone()));
-    let pair = Pair::new(rail.clone(), profile, RADIUS)?;
     let (mut random, mut alike) = (Random::new(353), 0);
     for _ in 0..scenes().div_ceil(20) {
-        let [lateral, yaw, roll] = random_position(&mut random);
-        let march = turning(&wheel, &rail, position(lateral, yaw, roll), 0.0)?;
-        let contact = of_right(&march.turned(random.between(-7.0, 7.0))?)?.contact;
-        alike += are_alike([&contact.placed_on(&pair, &body, 0.0)?, &contact.placed(&pair)?], &mut random);
+        let [varying, round] = round_wheels(&mut random)?;
+        alike += are_alike([&varying, &round], &mut random);
     }
     assert!(alike as u64 > 50 * scenes().div_ceil(20), "{alike}");
     Ok(())
@@ -135,13 +126,13 @@ fn lines_along_normals_end_on_both_surfaces() -> Result<()> {
 fn is_flooded(placement: &Placement, approach: f64) -> std::result::Result<bool, String> {
     let patch = Patch::over_rail(placement, approach, &Window::UNBOUNDED);
     let gap = NormalGap::new(placement);
-    let mut line = None;
+    let mut known = None;
     let level = |sigma: f64, eta: f64| {
-        if line.as_ref().is_none_or(|(at, _)| *at != sigma) {
-            line = Some((sigma, gap.line(sigma)));
+        if known.as_ref().is_none_or(|(at, _)| *at != sigma) {
+            known = Some((sigma, gap.column(sigma)));
         }
-        let Some((_, Some(line))) = &mut line else { return f64::NAN };
-        gap.gap_on(line, eta) + approach * (1.0 - line.rail.cos)
+        let Some((_, Some(column))) = &mut known else { return f64::NAN };
+        gap.gap_in(column, eta) + approach * (1.0 - column.rail.cos)
     };
     Ok(flooded(level, &patch)? > 0)
 }

@@ -1,4 +1,4 @@
-//! Joins the intervals of lines over a rail that varies along the track to bands.
+//! Joins the intervals of lines where a body varies to bands.
 
 use super::lines::{Interval, Line, TO_LOWEST, Varying, links};
 use crate::numerics::roots::change;
@@ -98,7 +98,7 @@ fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
     let depth = rows[at].1.lowest[1];
     let slope = |xi: f64| {
         let eta = varying.lowest(xi, Some(lane));
-        varying.gap.gradient(xi, eta)[0]
+        varying.level.gradient(xi, eta)[0]
     };
     let turn = change(slope, [from, to], TO_LOWEST);
     // A crease, where s does not turn, may be deeper.

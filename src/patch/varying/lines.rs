@@ -1,4 +1,4 @@
-//! Lines of constant ξ over a rail that varies along the track, and the intervals of the patch on them.
+//! Lines of constant ξ where a body varies, and the intervals of the patch on them. Over the rail's surface ξ is σ, and s is t + δ (1 − cos α).
 //!
 //! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
 //! nearer to each other around C. Where two neighbours differ in the number of their intervals, or an end moves far between them,
@@ -71,10 +71,10 @@ pub(super) struct Line {
     pub intervals: Vec<Interval>,
 }
 
-/// The slices of a placed pair on a rail that varies at one approach.
+/// The slices of a placed pair with a body that varies at one approach.
 #[derive(Debug)]
 pub(in crate::patch) struct Varying<'a> {
-    pub(super) gap: Level<'a>,
+    pub(in crate::patch) level: Level<'a>,
     pub(super) approach: f64,
     /// Step along lines of constant ξ \[mm\].
     step: f64,
@@ -85,20 +85,20 @@ pub(in crate::patch) struct Varying<'a> {
 }
 
 impl<'a> Varying<'a> {
-    /// Makes the slices by a gap over a placed pair.
-    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64, gap: Level<'a>) -> Self {
+    /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
+    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Self {
         // Of δ = NaN, where nothing is found, and below 0 the least.
         let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
         let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
         let farthest = FARTHEST.max(FARTHEST_SHARE * half);
-        Self { gap, approach, step, farthest, lanes: Vec::new() }
+        Self { level, approach, step, farthest, lanes: Vec::new() }
     }
 
     /// Finds the lines over a window \[ξ, η\], from one end to the other of the range of ξ in which it holds the rail; none if it holds
     /// nothing of it.
     pub(super) fn lines(&mut self, placement: &Placement, window: [[f64; 2]; 2]) -> Vec<Line> {
         let eta = [window[1][0].max(-self.farthest), window[1][1].min(self.farthest)];
-        let reach = match self.gap.normal_gap() {
+        let reach = match self.level.normal_gap() {
             Some(gap) => gap.rail().reach(),
             None => placement.lofted().and_then(|body| body.reach(eta)),
         };
@@ -131,7 +131,7 @@ impl<'a> Varying<'a> {
         let mut found = [0.0; 2];
         for (found, outward) in found.iter_mut().zip([-1.0, 1.0]) {
             let guess = middle + outward * half;
-            let mut depth = |eta: f64| self.gap.gap(xi, eta) - approach;
+            let mut depth = |eta: f64| self.level.gap(xi, eta) - approach;
             let around = BESIDE_EDGE.map(|share| [-share, share].map(|by| guess + outward * by * half));
             let held = around.into_iter().find(|ends| depth(ends[0]) < 0.0 && depth(ends[1]) >= 0.0)?;
             *found = change(depth, held, TO_EDGE);
@@ -152,7 +152,7 @@ impl<'a> Varying<'a> {
 
     /// Returns s \[mm\].
     pub(in crate::patch) fn separation(&mut self, xi: f64, eta: f64) -> f64 {
-        self.gap.gap(xi, eta)
+        self.level.gap(xi, eta)
     }
 
     /// Finds the interval of a lane at ξ, that nearest to those of the lines on both sides; without a lane the deepest one.
@@ -211,7 +211,7 @@ impl<'a> Varying<'a> {
             })
             .collect();
         for k in dips.into_iter().rev() {
-            let slope = |eta: f64| self.gap.slope(xi, eta);
+            let slope = |eta: f64| self.level.slope(xi, eta);
             let eta = change(slope, [points[k - 1][0], points[k + 1][0]], TO_LOWEST);
             let (s, at) = (self.separation(xi, eta), k + usize::from(eta > points[k][0]));
             if s < points[k][1] {

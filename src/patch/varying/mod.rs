@@ -1,4 +1,4 @@
-//! The patch on a rail that varies along the track.
+//! The patch where a body varies: a rail along the track, or a wheel around its axle.
 
 mod bands;
 mod lines;
