@@ -163,8 +163,11 @@ impl FramedLoft {
         Self { loft, laid, origin, axes, along, levels, first, along_normal: false, plane }
     }
 
-    /// Looks at the body from the point (ξ, 0, ζ) \[mm\] of the frame along a normal that leans by α about η: it is (−sin α, 0, cos α).
-    /// What is made has feet at ξ = 0 only, and none farther in front of that point than 10 mm.
+    /// Gives the body in a frame whose origin is the point (ξ, 0, ζ) \[mm\] of this one and whose ζ is (−sin α, 0, cos α); η keeps its
+    /// direction.
+    ///
+    /// Only feet at ξ = 0 of the new frame may be asked for. Sheets more than 10 mm behind its origin, on the side of the other body's
+    /// material, are left out: ζ meets them on the far side of that body.
     pub fn turned(&self, [xi, zeta]: [f64; 2], [sin, cos]: [f64; 2]) -> Self {
         let [across, ahead, up] = self.axes;
         let mixed = |a: f64, b: f64| [0, 1, 2].map(|k| a * across[k] + b * up[k]);

@@ -20,8 +20,8 @@ pub(super) struct Run {
     pub xi: Vec<f64>,
 }
 
-/// Finds the runs in the section at y \[mm\]; of those `beside` ξ = 0 alone what feet there are sought from. `xi` gives the coordinate
-/// \[mm\] of a point \[x, z\] of a section at y.
+/// Finds the runs in the section at y \[mm\]. `xi` gives ξ \[mm\] of a point \[x, z\] of a section at y. With `beside`, only cells near
+/// ξ = 0 are looked at, from which all feet at ξ = 0 can be found.
 pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, beside: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (strip, own) in loft.strips.iter().enumerate() {

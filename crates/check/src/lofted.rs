@@ -293,7 +293,8 @@ impl<'a> MeshedLoft<'a> {
         self.ray(at, behind)
     }
 
-    /// Measures how far the nearest sheet lies from a point along ζ, with what is allowed and (ξ, η); `None` where it is steep.
+    /// Measures the distance \[mm\] along ζ of a point (ξ, η, ζ) from the sheet that it is said to lie on. Returns it with the distance that
+    /// rounding allows and with (ξ, η); `None` where the sheet is too steep to measure.
     fn off(&self, [xi, eta, zeta]: [f64; 3]) -> Option<(f64, f64, [f64; 2])> {
         let rail = self.lofted.side() == Side::Rail;
         let origin = if rail { RayOrigin::DownFrom(zeta + NEAR) } else { RayOrigin::UpFrom(zeta - NEAR) };

@@ -103,8 +103,8 @@ impl fmt::Display for NormalGapReport {
     }
 }
 
-/// Compares normal gaps with the closest distances of the rail's points from the wheel's mesh; of a wheel that varies, with those of its
-/// points from the rail's mesh.
+/// Compares normal gaps with closest distances: under a wheel of revolution those of the rail's points from the wheel's mesh, under a
+/// wheel that varies those of the wheel's points from the rail's mesh.
 ///
 /// Cost: about a millisecond a point.
 ///
