@@ -8,7 +8,7 @@ import numpy as np
 import pyvista
 import vtk
 from contact_deck import read_contact
-from folder import Checks, Folder
+from folder import Checks, Folder, colours
 from vtk.util.numpy_support import vtk_to_numpy
 from wrp import read_wrp
 
@@ -95,8 +95,8 @@ named = {"t [mm]", "σ [mm]", "α [°]", "boundary t = δ cos α", *ends, folder
 checks("conformal.svg is XML and names what it shows", svg.tag.endswith("svg") and named <= set(words),
        ", ".join(sorted(named - set(words))) or f"{len(named)} names")
 image = pyvista.read(folder / "conformal.png")
-shades = np.unique(np.asarray(image.active_scalars).reshape(-1, image.active_scalars.shape[-1]), axis=0)
-checks("conformal.png is a picture", min(image.dimensions[:2]) >= 1000 and len(shades) > 50, f"{image.dimensions}, {len(shades)} colours")
+shades = colours(image)
+checks("conformal.png is a picture", min(image.dimensions[:2]) >= 1000 and shades > 50, f"{image.dimensions}, {shades} colours")
 
 checks.client = "csv"
 rows = [tuple(map(float, row.values())) for row in csv.DictReader(open(folder / "interpen_sigma.csv"))]

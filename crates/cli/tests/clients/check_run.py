@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pyvista
-from folder import Checks, Folder
+from folder import Checks, Folder, colours
 from wrp import read_wrp
 
 # Facets keep within this share of the approach, and these shares of the window's longer side.
@@ -81,6 +81,6 @@ svg = ElementTree.parse(folder / "patch.svg").getroot()
 words = "".join(svg.itertext())
 checks("patch.svg is XML and names what it shows", svg.tag.endswith("svg") and "[mm]" in words and folder.summary["title"][:20] in words)
 image = pyvista.read(folder / "patch.png")
-shades = np.unique(np.asarray(image.active_scalars).reshape(-1, image.active_scalars.shape[-1]), axis=0)
-checks("patch.png is a picture", min(image.dimensions[:2]) >= 1000 and len(shades) > 50, f"{image.dimensions}, {len(shades)} colours")
+shades = colours(image)
+checks("patch.png is a picture", min(image.dimensions[:2]) >= 1000 and shades > 50, f"{image.dimensions}, {shades} colours")
 checks.done()

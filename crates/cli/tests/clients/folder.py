@@ -95,3 +95,8 @@ def depth(s, approach):
     """Interpenetration, NaN where s is."""
     return np.where(s > approach, 0.0, approach - s)
 
+
+def colours(image):
+    """The number of colours of a picture that VTK has read."""
+    channels = np.asarray(image.active_scalars)
+    return len(np.unique(channels @ 256 ** np.arange(channels.shape[1])))

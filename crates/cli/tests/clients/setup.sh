@@ -12,12 +12,11 @@ mkdir -p "$target"
 exec 9>"$target/clients-venv.lock"
 flock 9
 
-of_package=$here/../../../python/tests/requirements.txt
-if ! cat "$here/requirements.txt" "$of_package" | cmp -s - "$venv/installed.txt"; then
-    echo "clients: installing $here/requirements.txt and $of_package into $venv" >&2
+if ! cmp -s "$here/requirements.txt" "$venv/installed.txt"; then
+    echo "clients: installing $here/requirements.txt into $venv" >&2
     "${PYTHON:-python3}" -m venv "$venv" >&2
-    "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$here/requirements.txt" -r "$of_package" >&2
-    cat "$here/requirements.txt" "$of_package" >"$venv/installed.txt"
+    "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$here/requirements.txt" >&2
+    cp "$here/requirements.txt" "$venv/installed.txt"
 fi
 echo "$venv/bin/python"
 

@@ -26,7 +26,6 @@ mod measure_cli;
 mod pages;
 mod profile_cli;
 mod programs;
-mod python_package;
 mod run_cli;
 mod sweep_cli;
 mod table_cli;

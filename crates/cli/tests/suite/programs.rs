@@ -1,5 +1,6 @@
 //! The programs that our files are for, and the scripts that run them: shared by the tests of the clients.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -56,9 +57,14 @@ pub fn check(script: &str, dir: &Path, arguments: &[&str]) {
 
 /// What a script prints about a folder; a failed script fails the test. `None` where there is no Python to run it.
 pub fn output_of(script: &str, dir: &Path, arguments: &[&str]) -> Option<String> {
+    printed(script, std::iter::once(dir.as_os_str()).chain(arguments.iter().map(OsStr::new)))
+}
+
+/// What a script prints; a failed one fails the test. `None` where there is no Python to run it.
+fn printed<'a>(script: &str, arguments: impl Iterator<Item = &'a OsStr>) -> Option<String> {
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/clients");
     let python = &clients()?.python;
-    let output = Command::new(python).arg(scripts.join(script)).arg(dir).args(arguments).output().unwrap();
+    let output = Command::new(python).arg(scripts.join(script)).args(arguments).output().unwrap();
     let lines = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{script}:\n{lines}{}", String::from_utf8_lossy(&output.stderr));
     Some(lines)
@@ -83,33 +89,41 @@ pub fn check_calculix(dir: &Path) {
     }
 }
 
-/// Runs one script that needs the Fortran reader.
-fn check_decks(script: &str, dir: &Path) {
-    match clients().map(|clients| &clients.reader) {
-        Some(Some(reader)) => check(script, dir, &[reader]),
-        Some(None) => not_run("gfortran is missing, which the reader of the decks is compiled with"),
-        None => {}
+/// Scripts for every folder of a run over the tangent plane, and for what only `wheelrail run` writes there.
+const OF_EVERY_FOLDER: [&str; 5] =
+    ["check_text.py", "check_netcdf.py", "check_vtk.py", "check_meshio.py", "check_view.py"];
+const OF_RUNS: [&str; 2] = ["check_ply.py", "check_run.py"];
+
+/// Scripts for folders of a run over the rail's surface.
+const OVER_THE_RAIL: [&str; 2] = ["check_conformal.py", "check_view.py"];
+
+/// Scripts that need the compiled reader of the decks.
+const OF_DECKS: [&str; 3] = ["check_text.py", "check_run.py", "check_conformal.py"];
+
+/// Runs every reader on folders of `wheelrail run` with all formats.
+pub fn check_run(dirs: &[impl AsRef<Path>]) {
+    check_each(&[&OF_EVERY_FOLDER[..], &OF_RUNS].concat(), dirs);
+}
+
+/// Runs every reader on folders of `wheelrail run` over the rail's surface.
+pub fn check_conformal(dirs: &[impl AsRef<Path>]) {
+    check_each(&OVER_THE_RAIL, dirs);
+}
+
+/// Runs every reader on folders.
+pub fn check_all(dirs: &[impl AsRef<Path>]) {
+    check_each(&OF_EVERY_FOLDER, dirs);
+}
+
+fn check_each(scripts: &[&str], dirs: &[impl AsRef<Path>]) {
+    let reader = clients().and_then(|clients| clients.reader.as_deref());
+    if clients().is_some() && reader.is_none() {
+        not_run("gfortran is missing, which the reader of the decks is compiled with");
     }
-}
-
-/// Runs every reader on a folder of `wheelrail run` with all formats.
-pub fn check_run(dir: &Path) {
-    check_all(dir);
-    check("check_ply.py", dir, &[]);
-    check_decks("check_run.py", dir);
-}
-
-/// Runs every reader on a folder of `wheelrail run` over the rail's surface.
-pub fn check_conformal(dir: &Path) {
-    check_decks("check_conformal.py", dir);
-    check("check_view.py", dir, &[]);
-}
-
-/// Runs every reader on one folder.
-pub fn check_all(dir: &Path) {
-    check_decks("check_text.py", dir);
-    check("check_netcdf.py", dir, &[]);
-    check("check_vtk.py", dir, &[]);
-    check("check_meshio.py", dir, &[]);
-    check("check_view.py", dir, &[]);
+    let scripts = scripts.iter().filter(|script| reader.is_some() || !OF_DECKS.contains(script));
+    let arguments = std::iter::once(reader.unwrap_or_default()).chain(scripts.copied()).chain(["--"]);
+    let dirs = dirs.iter().map(|dir| dir.as_ref().as_os_str());
+    if let Some(lines) = printed("check_each.py", arguments.map(OsStr::new).chain(dirs)) {
+        eprint!("{lines}");
+    }
 }
