@@ -159,18 +159,26 @@ impl Polynomial {
     }
 
     pub(super) fn placed_by(&self, frame: &Station) -> Self {
-        let [mut x, mut z] = turned([&self.x, &self.z], frame.cos, -frame.sin);
+        let [mut x, mut z] = turned([&self.x, &self.z], [0.0; 2], frame.cos, -frame.sin);
         x[0] += frame.x;
         z[0] += frame.z;
         Self { t: self.t, x, z }
     }
 }
 
-/// Turns (x, z) into (x cos + z sin, z cos − x sin), coefficient by coefficient.
-pub(super) fn turned(c: [&[Twice]; 2], cos: impl Into<Twice>, sin: impl Into<Twice>) -> [Vec<Twice>; 2] {
+/// Turns (x, z) about the point `about` into (x cos + z sin, z cos − x sin), coefficient by coefficient.
+pub(super) fn turned(
+    c: [&[Twice]; 2],
+    about: [f64; 2],
+    cos: impl Into<Twice>,
+    sin: impl Into<Twice>,
+) -> [Vec<Twice>; 2] {
     let (cos, sin) = (cos.into(), sin.into());
-    let get = |c: &[Twice], k: usize| c.get(k).copied().unwrap_or(Twice::ZERO);
-    let both = (0..c[0].len().max(c[1].len())).map(|k| c.map(|c| get(c, k)));
+    let get = |axis: usize, k: usize| {
+        let own = c[axis].get(k).copied().unwrap_or(Twice::ZERO);
+        if k == 0 { own - about[axis] } else { own }
+    };
+    let both = (0..c[0].len().max(c[1].len())).map(|k| [get(0, k), get(1, k)]);
     both.map(|[x, z]| (x * cos + z * sin, z * cos - x * sin)).unzip::<_, _, Vec<_>, Vec<_>>().into()
 }
 

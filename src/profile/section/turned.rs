@@ -75,9 +75,8 @@ fn sign_changes(c: &[f64], rounding: f64, [a, b]: [f64; 2], depth: u32, out: &mu
 
 /// Turns a segment into a frame. Returns the coefficients of ξ(t) and of ζ(t), and the range of t.
 pub(super) fn seen_from(polynomial: &Polynomial, frame: &Station) -> ([Vec<Twice>; 2], [f64; 2]) {
-    let (mut x, mut z) = (polynomial.x.clone(), polynomial.z.clone());
-    (x[0], z[0]) = (x[0] - frame.x, z[0] - frame.z);
-    (turned([&x, &z], frame.cos, frame.sin), polynomial.t)
+    let c = [polynomial.x.as_slice(), polynomial.z.as_slice()];
+    (turned(c, [frame.x, frame.z], frame.cos, frame.sin), polynomial.t)
 }
 
 /// Turns a segment into the contact frame of its own point t = `origin`. ζ(t) then has no constant and no linear term,
@@ -87,7 +86,7 @@ pub(super) fn seen_from_own_point(polynomial: &Polynomial, origin: Twice) -> ([V
     z.resize(z.len().max(2), Twice::ZERO);
     (x[0], z[0]) = (Twice::ZERO, Twice::ZERO);
     let norm = (x[1] * x[1] + z[1] * z[1]).sqrt();
-    let [xi, mut zeta] = turned([&x, &z], x[1] / norm, z[1] / norm);
+    let [xi, mut zeta] = turned([&x, &z], [0.0; 2], x[1] / norm, z[1] / norm);
     zeta[1] = Twice::ZERO;
     ([xi, zeta], polynomial.t.map(|t| (Twice::from(t) - origin).into()))
 }
