@@ -166,7 +166,7 @@ impl Polynomial {
     }
 }
 
-/// Turns (x, z) about the point `about` into (x cos + z sin, z cos − x sin), coefficient by coefficient.
+/// Turns the curve (x(t), z(t)) less the point `about` into (x cos + z sin, z cos − x sin), coefficient by coefficient.
 pub(super) fn turned(
     c: [&[Twice]; 2],
     about: [f64; 2],

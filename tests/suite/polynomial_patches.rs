@@ -149,7 +149,7 @@ fn both(case: &Case) -> Open {
 
 #[test]
 fn patches_over_polynomials_are_what_a_flood_fill_finds() {
-    check_all(2 * campaign::scenes(), &[], case, both);
+    check_all(5 * campaign::scenes(), &[], case, both);
 }
 
 /// The first contacts of a scene of `tests/defects`, as cases of its own approach and grid.

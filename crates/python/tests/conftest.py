@@ -3,6 +3,7 @@
 import os
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -28,8 +29,12 @@ def measured() -> wr.Profile:
 
 def need(*modules: str) -> None:
     """Skip a test without these modules, or fail it where every client must run."""
-    missing = [module for module in modules if find_spec(module) is None]
-    if missing and os.environ.get("WHEELRAIL_REQUIRE_CLIENTS") == "1":
-        pytest.fail(f"missing: {missing}")
-    if missing:
-        pytest.skip(f"missing: {missing}")
+    if missing := [module for module in modules if find_spec(module) is None]:
+        absent(f"missing: {missing}")
+
+
+def absent(what: str) -> NoReturn:
+    """Skip a test for want of something, or fail it where every client must run."""
+    if os.environ.get("WHEELRAIL_REQUIRE_CLIENTS") == "1":
+        pytest.fail(what)
+    pytest.skip(what)

@@ -9,13 +9,13 @@ from conftest import ROOT, need
 
 PACKAGE = ROOT / "crates/python"
 
+# What has types, and the modules that it asks for somewhere.
 FOLDERS = ("python/wheelrail", "tests", "benches", "gallery")
-
-ALL = ("dask", "jupytext", "matplotlib", "meshio", "pandas", "polars", "pyarrow", "pyvista", "tamaas", "tqdm", "xarray")
+MODULES = ("dask", "jupytext", "matplotlib", "meshio", "pandas", "polars", "pyarrow", "pyvista", "tamaas", "tqdm", "xarray")
 
 
 def test_pyright_finds_no_fault_in_strict_mode() -> None:
-    need("basedpyright", *ALL)
+    need("basedpyright", *MODULES)
     command = [sys.executable, "-m", "basedpyright", "--project", "pyproject.toml", "--pythonpath", sys.executable, "--outputjson"]
     run = subprocess.run(command, cwd=PACKAGE, capture_output=True, text=True)
     found = json.loads(run.stdout)
@@ -26,7 +26,7 @@ def test_pyright_finds_no_fault_in_strict_mode() -> None:
 
 
 def test_mypy_finds_no_fault_in_strict_mode(tmp_path: Path) -> None:
-    need("mypy", *ALL)
+    need("mypy", *MODULES)
     plain = [sys.executable, "-m", "mypy", "--strict", "--config-file", "pyproject.toml", "--cache-dir", str(tmp_path)]
     run = subprocess.run([*plain, *FOLDERS], cwd=PACKAGE, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr

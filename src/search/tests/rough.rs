@@ -10,7 +10,7 @@ use pairs::random_pair;
 use super::*;
 
 /// Number of pairs in every run; `WHEELRAIL_ROUGH_PAIRS` sets another number.
-const PAIRS: u64 = 500;
+const PAIRS: u64 = 2000;
 
 /// First seed.
 const SEED: u64 = 0x2024_0001;

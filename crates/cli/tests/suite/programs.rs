@@ -89,12 +89,14 @@ pub fn check_calculix(dir: &Path) {
     }
 }
 
-/// Scripts for every folder of a run over the tangent plane, and for what only `wheelrail run` writes there.
-const OF_EVERY_FOLDER: [&str; 5] =
+/// Scripts that read the grid over the tangent plane and the boundary, which tests write, too.
+const OVER_THE_PLANE: [&str; 5] =
     ["check_text.py", "check_netcdf.py", "check_vtk.py", "check_meshio.py", "check_view.py"];
+
+/// Scripts that read what only `wheelrail run` writes over the tangent plane.
 const OF_RUNS: [&str; 2] = ["check_ply.py", "check_run.py"];
 
-/// Scripts for folders of a run over the rail's surface.
+/// Scripts that read a run over the rail's surface.
 const OVER_THE_RAIL: [&str; 2] = ["check_conformal.py", "check_view.py"];
 
 /// Scripts that need the compiled reader of the decks.
@@ -102,7 +104,7 @@ const OF_DECKS: [&str; 3] = ["check_text.py", "check_run.py", "check_conformal.p
 
 /// Runs every reader on folders of `wheelrail run` with all formats.
 pub fn check_run(dirs: &[impl AsRef<Path>]) {
-    check_each(&[&OF_EVERY_FOLDER[..], &OF_RUNS].concat(), dirs);
+    check_each(&[&OVER_THE_PLANE[..], &OF_RUNS].concat(), dirs);
 }
 
 /// Runs every reader on folders of `wheelrail run` over the rail's surface.
@@ -110,11 +112,12 @@ pub fn check_conformal(dirs: &[impl AsRef<Path>]) {
     check_each(&OVER_THE_RAIL, dirs);
 }
 
-/// Runs every reader on folders.
+/// Runs every reader of the grid and the boundary on folders that tests have written.
 pub fn check_all(dirs: &[impl AsRef<Path>]) {
-    check_each(&OF_EVERY_FOLDER, dirs);
+    check_each(&OVER_THE_PLANE, dirs);
 }
 
+/// Runs scripts on folders, without those of decks where no compiler makes their reader; fails with what they print.
 fn check_each(scripts: &[&str], dirs: &[impl AsRef<Path>]) {
     let reader = clients().and_then(|clients| clients.reader.as_deref());
     if clients().is_some() && reader.is_none() {
