@@ -92,6 +92,7 @@ pub use mesh::{Axes, StripCounts, StripMesh};
 /// Points, normals, rotations and frames of the public API are of this version of nalgebra.
 pub use nalgebra;
 pub use numerics::bodies::Bodies;
+pub use numerics::interval::Interval;
 pub use patch::{Component, Patch, Window};
 pub use placement::{Body, Pair, Placement, RailDistance, WheelDistance};
 pub use profile::{Arc, Half, Polynomial, Profile, Segment, Shape, Side, Station, inclination, standards};

@@ -1,5 +1,196 @@
-//! Arithmetic of intervals \[low, high\].
+//! Intervals of one coordinate, and their arithmetic.
 
+use std::ops::{Add, Mul, Neg};
+
+use serde::{Deserialize, Serialize};
+
+/// A closed interval of one coordinate, \[low, high\], in the coordinate's unit. Ends may be infinite. In files it is the list of
+/// its ends.
+///
+/// ```
+/// use wheelrail::Interval;
+///
+/// let head = Interval::new(-36.0, 36.0);
+/// assert!(head.contains(10.0) && head.width() == 72.0);
+/// assert_eq!(head.common(Interval::new(20.0, 50.0)), Some(Interval::new(20.0, 36.0)));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
+pub struct Interval {
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// All numbers.
+    pub const ALL: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);
+    /// No number: the hull of it and another interval is the other.
+    pub const NONE: Self = Self::new(f64::INFINITY, f64::NEG_INFINITY);
+
+    /// Makes the interval from `low` to `high`.
+    #[inline(always)]
+    pub const fn new(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    /// Makes the interval that holds one number alone.
+    #[inline(always)]
+    pub const fn of(number: f64) -> Self {
+        Self::new(number, number)
+    }
+
+    /// Makes the interval between two numbers, whichever is larger.
+    #[inline]
+    pub fn between(a: f64, b: f64) -> Self {
+        if a <= b { Self::new(a, b) } else { Self::new(b, a) }
+    }
+
+    /// Makes the smallest interval that holds some numbers: [`NONE`](Self::NONE) if there are none.
+    #[inline]
+    pub fn around(numbers: impl IntoIterator<Item = f64>) -> Self {
+        numbers.into_iter().fold(Self::NONE, Self::with)
+    }
+
+    /// Gives both ends, the lower one first.
+    #[inline(always)]
+    pub const fn ends(self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    /// Gives high − low: negative of an empty interval.
+    #[inline(always)]
+    pub fn width(self) -> f64 {
+        self.high - self.low
+    }
+
+    /// Gives the middle.
+    #[inline(always)]
+    pub fn middle(self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Says whether the interval holds a number, the ends included.
+    #[inline(always)]
+    pub fn contains(self, number: f64) -> bool {
+        self.low <= number && number <= self.high
+    }
+
+    /// Says whether both intervals share a number, an end that they share included.
+    #[inline(always)]
+    pub fn meets(self, other: Self) -> bool {
+        self.low <= other.high && other.low <= self.high
+    }
+
+    /// Says whether there is no number in the interval.
+    #[inline(always)]
+    pub fn is_empty(self) -> bool {
+        self.low > self.high
+    }
+
+    /// Gives the number of the interval that is nearest to a number.
+    #[inline(always)]
+    pub fn nearest(self, number: f64) -> f64 {
+        number.max(self.low).min(self.high)
+    }
+
+    /// Gives the smallest interval that holds this one and a number.
+    #[inline(always)]
+    pub fn with(self, number: f64) -> Self {
+        Self::new(self.low.min(number), self.high.max(number))
+    }
+
+    /// Gives the smallest interval that holds both.
+    #[inline(always)]
+    pub fn hull(self, other: Self) -> Self {
+        Self::new(self.low.min(other.low), self.high.max(other.high))
+    }
+
+    /// Gives what both intervals share; empty, with its ends swapped, if nothing.
+    #[inline(always)]
+    pub fn cut(self, other: Self) -> Self {
+        Self::new(self.low.max(other.low), self.high.min(other.high))
+    }
+
+    /// Gives what both intervals share; `None` if not even an end.
+    #[inline(always)]
+    pub fn common(self, other: Self) -> Option<Self> {
+        Some(self.cut(other)).filter(|cut| cut.low <= cut.high)
+    }
+
+    /// Gives the interval with both ends moved outwards by `margin`.
+    #[inline(always)]
+    pub fn grown(self, margin: f64) -> Self {
+        Self::new(self.low - margin, self.high + margin)
+    }
+
+    /// Gives the interval between what a monotone function makes of the ends, as `of(low)` and `of(high)` in this order.
+    #[inline(always)]
+    pub fn map(self, mut of: impl FnMut(f64) -> f64) -> Self {
+        Self::new(of(self.low), of(self.high))
+    }
+
+    /// Divides all numbers of the interval by those of a positive one.
+    #[inline]
+    pub fn over(self, positive: Self) -> Self {
+        self * Self::new(positive.high.recip(), positive.low.recip())
+    }
+}
+
+impl From<[f64; 2]> for Interval {
+    #[inline(always)]
+    fn from([low, high]: [f64; 2]) -> Self {
+        Self::new(low, high)
+    }
+}
+
+impl From<Interval> for [f64; 2] {
+    #[inline(always)]
+    fn from(interval: Interval) -> Self {
+        interval.ends()
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+
+    /// Adds every number of one interval to every number of the other.
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.low + other.low, self.high + other.high)
+    }
+}
+
+impl Add<f64> for Interval {
+    type Output = Self;
+
+    /// Moves the interval.
+    #[inline(always)]
+    fn add(self, by: f64) -> Self {
+        Self::new(self.low + by, self.high + by)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.high, -self.low)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    /// Multiplies every number of one interval by every number of the other.
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        Self::around([a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high])
+    }
+}
 /// Returns the interval between two numbers.
 pub fn ordered(a: f64, b: f64) -> [f64; 2] {
     if a <= b { [a, b] } else { [b, a] }
