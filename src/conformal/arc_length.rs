@@ -1,5 +1,6 @@
 //! The rail's surface by its arc length σ from the contact point.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::padded;
 use crate::numerics::polynomial::value_and_slope;
 use crate::numerics::quadrature::smooth_integrals;
@@ -45,7 +46,7 @@ pub struct RailArcLength<'a> {
 #[derive(Debug, Clone)]
 struct Stretch<'a> {
     /// Range of σ \[mm\].
-    sigma: [f64; 2],
+    sigma: Interval,
     curve: Curve<'a>,
     on_contact: bool,
 }
@@ -66,8 +67,8 @@ impl<'a> RailArcLength<'a> {
     pub fn new(placement: &'a Placement) -> Self {
         let section = &placement.rail().section;
         let mut stretches = Vec::new();
-        let centre = section.pieces.partition_point(|piece| piece.xi[1] < 0.0);
-        if section.pieces.get(centre).is_none_or(|piece| piece.xi[0] > 0.0) {
+        let centre = section.pieces.partition_point(|piece| piece.xi.high < 0.0);
+        if section.pieces.get(centre).is_none_or(|piece| piece.xi.low > 0.0) {
             return Self { stretches };
         }
         let frame = &section.frame;
@@ -76,7 +77,7 @@ impl<'a> RailArcLength<'a> {
             let (Some(a), Some(b)) = (section.pieces.get(left), section.pieces.get(left + 1)) else {
                 return false;
             };
-            let ([xi_a, xi_b], [zeta_a, zeta_b]) = ([a.xi[1], b.xi[0]], [a.heights[1], b.heights[0]]);
+            let ([xi_a, xi_b], [zeta_a, zeta_b]) = ([a.xi.high, b.xi.low], [a.heights[1], b.heights[0]]);
             let slope = section.branches[a.branch].slope_from(&section.end(a, 1).0).abs();
             // A rounding of ξ moves the point of a steep end along its slope.
             let steep = if slope.is_finite() { 1.0 + slope } else { 1.0 / f64::EPSILON };
@@ -85,11 +86,11 @@ impl<'a> RailArcLength<'a> {
         let mut follow = |index: usize, from: (f64, f64), forward: bool| {
             let piece = &section.pieces[index];
             let branch = &section.branches[piece.branch];
-            let ends = if forward { [from.0, piece.xi[1]] } else { [piece.xi[0], from.0] };
-            let stretch = Stretch::new(branch, section.contact == Some(piece.branch), ends, from, forward);
+            let far = piece.xi[usize::from(forward)];
+            let stretch = Stretch::new(branch, section.contact == Some(piece.branch), far, from, forward);
             let sigma = stretch.sigma[usize::from(forward)];
             stretches.push(stretch);
-            (ends[usize::from(forward)], sigma)
+            (far, sigma)
         };
         let (mut index, mut at) = (centre, follow(centre, (0.0, 0.0), false));
         while index > 0 && connected(index - 1) {
@@ -101,19 +102,19 @@ impl<'a> RailArcLength<'a> {
             index += 1;
             at = follow(index, at, true);
         }
-        stretches.retain(|stretch| stretch.sigma[0] < stretch.sigma[1]);
-        stretches.sort_by(|a, b| a.sigma[0].total_cmp(&b.sigma[0]));
+        stretches.retain(|stretch| stretch.sigma.width() > 0.0);
+        stretches.sort_by(|a, b| a.sigma.low.total_cmp(&b.sigma.low));
         Self { stretches }
     }
 
     /// Returns the smallest and largest σ \[mm\]; `None` if C is not on the rail's surface.
-    pub fn reach(&self) -> Option<[f64; 2]> {
-        Some([self.stretches.first()?.sigma[0], self.stretches.last()?.sigma[1]])
+    pub fn reach(&self) -> Option<Interval> {
+        Some(Interval::new(self.stretches.first()?.sigma.low, self.stretches.last()?.sigma.high))
     }
 
     /// Returns the σ \[mm\] of the joints inside the reach, ascending, without C.
     pub fn joints(&self) -> Vec<f64> {
-        let ends = self.stretches.windows(2).map(|pair| pair[1].sigma[0]);
+        let ends = self.stretches.windows(2).map(|pair| pair[1].sigma.low);
         ends.filter(|&sigma| sigma != 0.0).collect()
     }
 
@@ -123,8 +124,8 @@ impl<'a> RailArcLength<'a> {
     /// Accuracy: on the segment through C a few roundings of each coordinate, relative to σ; elsewhere a few roundings of
     /// the profile's extent. Cost: a sine and a cosine on arcs; three or four short quadratures on polynomials.
     pub fn point(&self, sigma: f64) -> Option<RailPoint> {
-        let index = self.stretches.partition_point(|stretch| stretch.sigma[1] < sigma);
-        let stretch = self.stretches.get(index).filter(|stretch| stretch.sigma[0] <= sigma)?;
+        let index = self.stretches.partition_point(|stretch| stretch.sigma.high < sigma);
+        let stretch = self.stretches.get(index).filter(|stretch| stretch.sigma.low <= sigma)?;
         let at = stretch.curve.station(sigma);
         let on_contact = stretch.on_contact;
         Some(RailPoint { sigma, xi: at.x, zeta: at.z, cos: at.cos, sin: at.sin, on_contact })
@@ -132,22 +133,21 @@ impl<'a> RailArcLength<'a> {
 
     /// Finds σ \[mm\] of the point at ξ \[mm\]; NaN beyond the reach.
     pub fn sigma(&self, xi: f64) -> f64 {
-        let Some([low, high]) = self.reach() else { return f64::NAN };
+        let Some(reach) = self.reach() else { return f64::NAN };
         let across = |sigma: f64| self.point(sigma).map_or(f64::NAN, |point| point.xi - xi);
-        bracketed(across, low, high).unwrap_or(f64::NAN)
+        bracketed(across, reach.low, reach.high).unwrap_or(f64::NAN)
     }
 }
 
 impl<'a> Stretch<'a> {
-    /// Makes the stretch over the abscissae `ends` \[mm\] of a branch, which continues from (ξ, σ) \[mm\].
+    /// Makes the stretch of a branch from (ξ, σ) \[mm\] to the abscissa `far` \[mm\].
     fn new(
         branch: &'a Branch,
         on_contact: bool,
-        ends: [f64; 2],
+        far: f64,
         (xi, begin): (f64, f64),
         forward: bool,
     ) -> Self {
-        let [far, sign] = if forward { [ends[1], 1.0] } else { [ends[0], -1.0] };
         let (curve, length) = match &branch.shape {
             BranchShape::Arc(arc) => {
                 // The contact segment goes through C with no rounding.
@@ -158,11 +158,11 @@ impl<'a> Stretch<'a> {
             BranchShape::Polynomial(branch) => {
                 let t = if on_contact && xi == 0.0 { 0.0 } else { branch.parameter(xi) };
                 let curve = Curve::Polynomial { begin, t, branch };
-                (curve, run_length(branch, [t, branch.parameter(far)]))
+                (curve, run_length(branch, t, branch.parameter(far)))
             }
         };
-        let end = begin + sign * length.abs();
-        Self { sigma: if forward { [begin, end] } else { [end, begin] }, curve, on_contact }
+        let sign = if forward { 1.0 } else { -1.0 };
+        Self { sigma: Interval::between(begin, begin + sign * length.abs()), curve, on_contact }
     }
 }
 
@@ -177,12 +177,11 @@ fn arc_length(arc: &ArcBranch, from: &Station, far: f64) -> f64 {
 }
 
 /// Computes the length \[mm\] of a polynomial between two parameters; negative if they descend.
-fn run_length(branch: &PolynomialBranch, [a, b]: [f64; 2]) -> f64 {
-    let [low, high] = if a <= b { [a, b] } else { [b, a] };
+fn run_length(branch: &PolynomialBranch, a: f64, b: f64) -> f64 {
+    let over = Interval::between(a, b);
     let speed = |t: &f64| value_and_slope(&branch.xi, *t)[1].hypot(value_and_slope(&branch.zeta, *t)[1]);
-    let short = high - low <= SHORT * (branch.t[1] - branch.t[0]);
-    let [length] =
-        smooth_integrals(&mut |t| [padded(t.iter().map(speed))], [low, high], [LENGTH_DEMAND], short);
+    let short = over.width() <= SHORT * branch.t.width();
+    let [length] = smooth_integrals(&mut |t| [padded(t.iter().map(speed))], over, [LENGTH_DEMAND], short);
     if a <= b { length } else { -length }
 }
 
@@ -214,15 +213,15 @@ impl Curve<'_> {
 /// range.
 fn parameter(branch: &PolynomialBranch, from: f64, length: f64) -> f64 {
     let speed = |t: f64| value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1]);
-    let [low, high] = branch.t;
     let (mut t, mut walked) = (from, 0.0);
     for _ in 0..STEPS {
-        let next = (t + (length - walked) / speed(t)).clamp(low, high);
+        let next = (t + (length - walked) / speed(t));
+        let next = branch.t.nearest(next);
         let step = next - t;
         if step.abs() <= f64::EPSILON * (next - from).abs() {
             break;
         }
-        walked += run_length(branch, [t, next]);
+        walked += run_length(branch, t, next);
         t = next;
     }
     t

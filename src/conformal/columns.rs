@@ -11,6 +11,7 @@ use super::ray::{Ray, RayBodies};
 use super::sight::{point, searched};
 use super::span::{RayPoints, RaySpan, Reach, points};
 use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
 use crate::numerics::nan_max;
 use crate::separation::{
@@ -172,10 +173,10 @@ impl<'g, 'a> Columns<'g, 'a> {
         let (mut from, mut end) = (0.0, f64::INFINITY);
         while let Some(span) = next {
             let Reach { run, u } = span.reach(from, reach);
-            if u[1] > u[0] || u[0] == 0.0 {
+            if u.width() > 0.0 || u.low == 0.0 {
                 self.over_span(&span, run, u, out);
             }
-            from = u[1];
+            from = u.high;
             if span.is_last() {
                 end = from;
             }
@@ -188,7 +189,7 @@ impl<'g, 'a> Columns<'g, 'a> {
     }
 
     /// Evaluates one span between two u \[mm²\], by its polynomial or else point by point.
-    fn over_span(&mut self, span: &RaySpan<'_>, run: f64, u: [f64; 2], out: &mut [f64]) {
+    fn over_span(&mut self, span: &RaySpan<'_>, run: f64, u: Interval, out: &mut [f64]) {
         let fitter = Fit { span, run, demand: self.demand, least: self.count };
         let fit = self.arch.dispatch(fitter);
         if let Some(fit) = &fit {
@@ -216,7 +217,7 @@ impl<'g, 'a> Columns<'g, 'a> {
         if eta.len() <= MANY {
             return self.singly(at, eta, out);
         }
-        let Some([least, most]) = self.interpolated(at, eta, out) else {
+        let Some(Interval { low: least, high: most }) = self.interpolated(at, eta, out) else {
             let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
             self.skewed(at, eta.0, out.0);
             return self.skewed(at, eta.1, out.1);
@@ -245,14 +246,13 @@ impl<'g, 'a> Columns<'g, 'a> {
 
     /// Interpolates t over an interval of η. Returns the least and the largest |t| at the Chebyshev points, or `None` where
     /// t does not lie over one branch of the wheel or has too many digits for one polynomial.
-    fn interpolated(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) -> Option<[f64; 2]> {
-        let (a, b) = (*eta.first()?, *eta.last()?);
-        let interval = [a + (b - a) / 2.0, (b - a) / 2.0];
+    fn interpolated(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) -> Option<Interval> {
+        let interval = Interval::new(*eta.first()?, *eta.last()?);
         let bodies = &self.gap.bodies;
         let (dropped, least, most) =
             self.arch.dispatch(Interpolation { bodies, at, interval, demand: self.demand, eta, out })?;
         self.error = self.error.max(dropped);
-        Some([least, most])
+        Some(Interval::new(least, most))
     }
 }
 
@@ -336,8 +336,8 @@ impl Fit<'_, '_> {
 struct Interpolation<'w, 'a> {
     bodies: &'w RayBodies<'a>,
     at: &'w RailPoint,
-    /// Centre and half the length of the interval of η \[mm\].
-    interval: [f64; 2],
+    /// The interval of η \[mm\].
+    interval: Interval,
     demand: Demand,
     eta: &'w [f64],
     out: &'w mut [f64],
@@ -350,14 +350,14 @@ impl pulp::WithSimd for Interpolation<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<(f64, f64, f64)> {
         let Self { bodies, at, interval, demand, eta, out } = self;
-        let [centre, half] = interval;
+        let (centre, half) = (interval.middle(), interval.width() / 2.0);
         let nodes = &*chebyshev::NODES;
         let RayPoints { t, abscissae, piece, over_contact } =
             points(bodies, at, &lanes(|k| centre + half * nodes[k]))?;
         // The abscissa is nearly a parabola in η: a turn between two points moves it by less than the step between others.
         let margin = abscissae.windows(2).fold(0.0, |most: f64, pair| most.max((pair[1] - pair[0]).abs()));
-        let [low, high] = [piece[0] + margin, piece[1] - margin];
-        if !every::<MANY>(|k| low <= abscissae[k] && abscissae[k] <= high) {
+        let inner = piece.grown(-margin);
+        if !every::<MANY>(|k| inner.contains(abscissae[k])) {
             return None;
         }
         let size = largest(&t);

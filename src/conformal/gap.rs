@@ -7,6 +7,7 @@ use super::ray::RayBodies;
 use super::sight;
 use super::span::RayPoint;
 use crate::lofted::{Feet, FramedLoft, LoftFoot};
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 
 /// Number of equal steps in which the largest and least angle of a range are sought.
@@ -163,11 +164,11 @@ impl<'a> NormalGap<'a> {
     }
 
     /// Returns the least and largest α \[rad\] over a range of σ \[mm\], at its ends, joints and equal steps between.
-    pub fn angles(&self, [a, b]: [f64; 2]) -> [f64; 2] {
-        let steps = (0..=ANGLE_STEPS).map(|k| a + (b - a) * k as f64 / ANGLE_STEPS as f64);
-        let joints = self.rail.joints().into_iter().filter(|sigma| a < *sigma && *sigma < b);
-        let all = steps.chain(joints).map(|sigma| self.angle(sigma)).filter(|angle| !angle.is_nan());
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| [low.min(angle), high.max(angle)])
+    pub fn angles(&self, over: Interval) -> Interval {
+        let step = |k: usize| over.low + over.width() * k as f64 / ANGLE_STEPS as f64;
+        let steps = (0..=ANGLE_STEPS).map(step);
+        let joints = self.rail.joints().into_iter().filter(|sigma| over.contains(*sigma));
+        Interval::around(steps.chain(joints).map(|sigma| self.angle(sigma)))
     }
 
     /// Computes everything at one point; `None` beyond the rail's range of σ.

@@ -4,6 +4,7 @@
 //! P′ + t n′ − e d, d = (sinθ, cosθ). As e grows from 0, the line moves along the profile, from segment to segment.
 
 use super::arc_length::RailPoint;
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Branch, ONE_JOINT, Piece, Section};
 use crate::separation::{Surface, sagitta};
@@ -21,7 +22,7 @@ pub struct RayBodies<'a> {
     /// 1 − cos χ, to all digits.
     versine: f64,
     /// Intervals of ξ \[mm\] at which the wheel's outer surface has a step or a hole.
-    steps: Vec<[f64; 2]>,
+    steps: Vec<Interval>,
     /// Size of the coordinates \[mm\] whose roundings part the two sides of a joint.
     size: f64,
 }
@@ -89,12 +90,9 @@ impl<'a> RayBodies<'a> {
     pub fn edges_over(&self, from: &RailPoint, eta: &[f64]) -> [bool; 2] {
         let ends = [eta.first(), eta.last()].map(|eta| self.ray(from, eta.copied().unwrap_or(0.0)));
         let reach = ends.iter().map(|ray| ray.own_sagitta() * self.wheel.sin.abs()).fold(0.0, f64::max);
-        let low = ends[0].p[0].min(ends[1].p[0]) - reach;
-        let high = ends[0].p[0].max(ends[1].p[0]) + reach;
-        let pieces = &self.wheel.section.pieces;
-        let inside = pieces.first().is_some_and(|piece| piece.xi[0] <= low)
-            && pieces.last().is_some_and(|piece| high <= piece.xi[1]);
-        [self.steps.iter().any(|[begin, end]| *begin <= high && low <= *end), !inside]
+        let over = Interval::between(ends[0].p[0], ends[1].p[0]).grown(reach);
+        let inside = self.wheel.section.reach().is_some_and(|reach| reach.holds(over));
+        [self.steps.iter().any(|step| step.meets(over)), !inside]
     }
 
     /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew all η have the same ray but for η.
@@ -185,7 +183,7 @@ impl<'a> Ray<'a> {
     pub fn passes_once(&self, index: usize) -> bool {
         let slopes = self.bodies.wheel.section.slopes(index);
         // A vertical surface has an infinite slope, and rays along ζ cross it once, too.
-        self.n[0] == 0.0 || slopes.iter().all(|slope| slope * self.n[0] < self.n[1])
+        self.n[0] == 0.0 || slopes.ends().iter().all(|slope| slope * self.n[0] < self.n[1])
     }
 
     /// Tells whether a piece leads from one side of the ray to the other everywhere between the abscissa of P′, if it is above P′, and
@@ -195,7 +193,7 @@ impl<'a> Ray<'a> {
             return true;
         }
         let (piece, from) = (&self.pieces()[index], self.p[0]);
-        if from < piece.xi[0] || piece.xi[1] < from {
+        if !piece.xi.contains(from) {
             return false;
         }
         let branch = self.branch(piece);
@@ -203,9 +201,10 @@ impl<'a> Ray<'a> {
         // A ray from a point in the material is followed against its direction.
         let leans_right = self.n[0] > 0.0;
         let outside = (beside < 0.0) == leans_right || beside.abs() <= self.bodies.joint();
-        let [a, b] = if outside == leans_right { [from, piece.xi[1]] } else { [piece.xi[0], from] };
-        let [slopes, _] = branch.derivative_bounds(a, b);
-        slopes.iter().all(|slope| slope * self.n[0] < self.n[1])
+        let mut towards_end = piece.xi;
+        towards_end[usize::from(outside != leans_right)] = from;
+        let [slopes, _] = branch.derivative_bounds(towards_end);
+        slopes.ends().iter().all(|slope| slope * self.n[0] < self.n[1])
     }
 
     /// Tells whether two neighbouring pieces have one point in common, seen along the ray.
@@ -220,7 +219,7 @@ impl<'a> Ray<'a> {
     /// Method: the pieces are followed from the one above P′ towards the ray.
     pub fn first_piece(&self) -> Option<usize> {
         let last = self.pieces().len().checked_sub(1)?;
-        let mut index = self.pieces().partition_point(|piece| piece.xi[1] < self.p[0]).min(last);
+        let mut index = self.pieces().partition_point(|piece| piece.xi.high < self.p[0]).min(last);
         let mut came = None;
         while self.leads(index) {
             let [low, high] = self.ends_beside(index);

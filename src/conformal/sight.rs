@@ -113,7 +113,7 @@ impl Sight<'_, '_> {
         loop {
             for next in self.places(index, before.xi, rises) {
                 if (before.by < 0.0) != (next.by < 0.0) {
-                    return Some((index, self.crossing(index, [before.xi, next.xi])));
+                    return Some((index, self.crossing(index, before.xi, next.xi)));
                 }
                 before = next;
             }
@@ -132,8 +132,8 @@ impl Sight<'_, '_> {
     fn beginning(&self) -> Option<(usize, Beside, bool)> {
         let (ray, from) = (self.ray, self.ray.p[0] - self.own * self.ray.bodies.wheel.sin);
         let leans_right = ray.n[0] > 0.0;
-        let at = ray.pieces().partition_point(|piece| piece.xi[1] < from);
-        if let Some(piece) = ray.pieces().get(at).filter(|piece| piece.xi[0] <= from) {
+        let at = ray.pieces().partition_point(|piece| piece.xi.high < from);
+        if let Some(piece) = ray.pieces().get(at).filter(|piece| piece.xi.low <= from) {
             // With the ray from a rail's point outside of the material, and against it from one inside.
             let begin = self.beside([from, ray.branch(piece).height(from)]);
             return Some((at, begin, begin.by < 0.0));
@@ -149,8 +149,9 @@ impl Sight<'_, '_> {
         let branch = ray.branch(piece);
         let mut all = Vec::new();
         if !ray.passes_once(index) {
-            let range = if rises { [from, piece.xi[1]] } else { [piece.xi[0], from] };
-            let turns = parallel_to(branch, ray.n, range);
+            let mut over = piece.xi;
+            over[usize::from(!rises)] = from;
+            let turns = parallel_to(branch, ray.n, over);
             all.extend(turns.into_iter().map(|xi| self.beside([xi, branch.height(xi)])));
             if !rises {
                 all.reverse();
@@ -161,7 +162,7 @@ impl Sight<'_, '_> {
     }
 
     /// Finds the abscissa \[mm\] at which a piece crosses the ray between two others.
-    fn crossing(&self, index: usize, [a, b]: [f64; 2]) -> f64 {
+    fn crossing(&self, index: usize, a: f64, b: f64) -> f64 {
         let branch = self.ray.branch(&self.ray.pieces()[index]);
         bracketed(|xi| self.beside([xi, branch.height(xi)]).by, a, b).unwrap_or(b)
     }

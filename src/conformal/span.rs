@@ -4,6 +4,7 @@ use super::arc_length::RailPoint;
 use super::meeting::along_by;
 use super::ray::{Ray, RayBodies};
 use super::rays::{Beginning, Met, at_joint, in_midplane, meet};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::Branch;
 use crate::separation::sagitta;
@@ -49,7 +50,7 @@ pub struct Reach {
     /// e at the end less e at the beginning \[mm\].
     pub run: f64,
     /// Range of u \[mm²\] over which the span counts.
-    pub u: [f64; 2],
+    pub u: Interval,
 }
 
 /// Points of the wheel on the rays of 16 places of one σ, over one piece.
@@ -60,7 +61,7 @@ pub struct RayPoints {
     /// Abscissae of the profile's points \[mm\].
     pub abscissae: Lanes,
     /// Range of abscissae of the piece \[mm\].
-    pub piece: [f64; 2],
+    pub piece: Interval,
     /// Whether the points lie over both contact segments.
     pub over_contact: bool,
 }
@@ -204,14 +205,14 @@ impl<'a> RaySpan<'a> {
             let w = self.ray.axle_distance(self.t_at_end());
             let end = self.end * (2.0 * w + self.end);
             if w > 0.0 && end < u_max {
-                return Reach { run: self.end - e0, u: [begin, end.max(begin)] };
+                return Reach { run: self.end - e0, u: Interval::new(begin, end.max(begin)) };
             }
         }
         // t grows by about e − e₀ over the cosine between the normal and the axle's plane; its square enters w.
         let down = self.ray.down;
         let near = sagitta(self.w, u_max);
         let e = sagitta(self.w - (near - e0) * down * down, u_max);
-        Reach { run: e - e0, u: [begin, u_max] }
+        Reach { run: e - e0, u: Interval::new(begin, u_max) }
     }
 
     /// Returns t at the beginning \[mm\].

@@ -1,6 +1,6 @@
 //! Intervals of one coordinate, and their arithmetic.
 
-use std::ops::{Add, Mul, Neg};
+use std::ops::{Add, Index, IndexMut, Mul, Neg};
 
 use serde::{Deserialize, Serialize};
 
@@ -68,13 +68,31 @@ impl Interval {
     /// Gives the middle.
     #[inline(always)]
     pub fn middle(self) -> f64 {
-        0.5 * (self.low + self.high)
+        self.low + (self.high - self.low) / 2.0
+    }
+
+    /// Gives the lower and the upper half.
+    #[inline(always)]
+    pub fn halves(self) -> [Self; 2] {
+        [Self::new(self.low, self.middle()), Self::new(self.middle(), self.high)]
+    }
+
+    /// Gives the largest distance from zero in the interval.
+    #[inline(always)]
+    pub fn magnitude(self) -> f64 {
+        self.low.abs().max(self.high.abs())
     }
 
     /// Says whether the interval holds a number, the ends included.
     #[inline(always)]
     pub fn contains(self, number: f64) -> bool {
         self.low <= number && number <= self.high
+    }
+
+    /// Says whether another interval lies in this one, common ends included.
+    #[inline(always)]
+    pub fn holds(self, other: Self) -> bool {
+        self.low <= other.low && other.high <= self.high
     }
 
     /// Says whether both intervals share a number, an end that they share included.
@@ -152,6 +170,23 @@ impl From<Interval> for [f64; 2] {
     }
 }
 
+/// An end by its number: 0 the lower one, 1 the upper one.
+impl Index<usize> for Interval {
+    type Output = f64;
+
+    #[inline(always)]
+    fn index(&self, end: usize) -> &f64 {
+        if end == 0 { &self.low } else { &self.high }
+    }
+}
+
+impl IndexMut<usize> for Interval {
+    #[inline(always)]
+    fn index_mut(&mut self, end: usize) -> &mut f64 {
+        if end == 0 { &mut self.low } else { &mut self.high }
+    }
+}
+
 impl Add for Interval {
     type Output = Self;
 
@@ -190,25 +225,4 @@ impl Mul for Interval {
         let (a, b) = (self, other);
         Self::around([a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high])
     }
-}
-/// Returns the interval between two numbers.
-pub fn ordered(a: f64, b: f64) -> [f64; 2] {
-    if a <= b { [a, b] } else { [b, a] }
-}
-
-/// Multiplies two intervals.
-pub fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
-    [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-}
-
-/// Divides an interval by a positive one.
-pub fn quotient(a: [f64; 2], positive: [f64; 2]) -> [f64; 2] {
-    product(a, [positive[1].recip(), positive[0].recip()])
-}
-
-/// Adds two intervals. The ends of b may be swapped, as a change of sign swaps them.
-pub fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let b = ordered(b[0], b[1]);
-    [a[0] + b[0], a[1] + b[1]]
 }

@@ -1,6 +1,7 @@
 //! The noise of a function's values, measured where it may be larger than it is said to be.
 
 use super::chebyshev::NODES;
+use super::interval::Interval;
 use super::lanes::{Lanes, lanes};
 
 /// Length of the interval in which noise is measured, as a share of that over which the function is wanted. What is smooth bends by
@@ -12,8 +13,8 @@ const LEVEL: f64 = 4.0;
 
 /// Measures the noise of a function in the middle of an interval by how far 16 values close together are off a line; 0 if the interval
 /// is so short that they are at one place. `f` gives the values at 16 places.
-pub fn measured(f: impl FnOnce(&Lanes) -> Lanes, [a, b]: [f64; 2]) -> f64 {
-    let (middle, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+pub fn measured(f: impl FnOnce(&Lanes) -> Lanes, interval: Interval) -> f64 {
+    let (middle, half) = (interval.middle(), interval.width() / 2.0);
     let x = lanes(|k| middle + CLOSE * half * NODES[k]);
     let values = f(&x);
     let last = x.len() - 1;
@@ -31,9 +32,9 @@ mod tests {
     fn noise_is_found_and_what_is_smooth_has_none() {
         let smooth = |x: f64| (3.0 * x).sin() / (x + 1.1);
         let rough = |x: f64| smooth(x) + 1e-9 * (1e12 * x).sin();
-        let of = |f: &dyn Fn(f64) -> f64| measured(|x: &Lanes| x.map(f), [-1.0, 2.0]);
+        let of = |f: &dyn Fn(f64) -> f64| measured(|x: &Lanes| x.map(f), Interval::new(-1.0, 2.0));
         assert!(of(&smooth) < 1e-14, "{}", of(&smooth));
         assert!((1e-9..1e-8).contains(&of(&rough)), "{}", of(&rough));
-        assert_eq!(measured(|x: &Lanes| x.map(rough), [1.0; 2]), 0.0);
+        assert_eq!(measured(|x: &Lanes| x.map(rough), Interval::of(1.0)), 0.0);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Mul};
 
+use super::interval::Interval;
 use super::lanes::{Lanes, multiply_add};
 use super::twice::Twice;
 
@@ -137,11 +138,10 @@ pub fn recentred<T: Copy + Add<Output = T> + Mul<Output = T>>(c: &[T], centre: T
     out
 }
 
-/// Computes bounds of p over \[t0, t1\] from its Bernstein coefficients. They are never too narrow by more than rounding, exact
+/// Computes bounds of p over an interval of t from its Bernstein coefficients. They are never too narrow by more than rounding, exact
 /// at the ends, and converge with the square of the width.
-pub fn range(c: &[f64], t0: f64, t1: f64) -> [f64; 2] {
-    let around = |[low, high]: [f64; 2], v: f64| [low.min(v), high.max(v)];
-    bernstein(c, t0, t1).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], around)
+pub fn range(c: &[f64], t: Interval) -> Interval {
+    Interval::around(bernstein(c, t.low, t.high))
 }
 
 /// Computes the Bernstein coefficients of p over \[t0, t1\]. p, or a curve with such coordinates, lies in their hull.
@@ -223,11 +223,11 @@ mod tests {
 
     #[test]
     fn range_holds_every_value_and_touches_the_ends() {
-        let [low, high] = range(&C, -1.0, 2.0);
+        let Interval { low, high } = range(&C, Interval::new(-1.0, 2.0));
         for k in 0..=100 {
             let p = value(&C, -1.0 + 0.03 * f64::from(k));
             assert!(low - 1e-13 <= p && p <= high + 1e-13);
         }
-        assert_eq!(range(&[2.0, 1.0], 0.0, 4.0), [2.0, 6.0]);
+        assert_eq!(range(&[2.0, 1.0], Interval::new(0.0, 4.0)), Interval::new(2.0, 6.0));
     }
 }

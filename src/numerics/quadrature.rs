@@ -1,5 +1,6 @@
 //! Adaptive Gauss–Kronrod quadrature.
 
+use super::interval::Interval;
 use super::lanes::{Lanes, MANY};
 
 /// A Gauss–Kronrod pair on \[−1, 1\]: the nodes of one half, the outermost first and the centre last; their weights; and the weights
@@ -68,7 +69,7 @@ const IDLE_HALVINGS: usize = 8;
 
 /// An interval with the integrals over it and their error estimates.
 struct GaussPanel<const N: usize> {
-    ends: [f64; 2],
+    over: Interval,
     sums: [f64; N],
     errors: [f64; N],
 }
@@ -85,27 +86,27 @@ struct GaussPanel<const N: usize> {
 /// Degenerate: NaN where `f` is NaN.
 pub fn smooth_integrals<const N: usize>(
     f: &mut impl FnMut(&[f64]) -> [Lanes; N],
-    ends: [f64; 2],
+    over: Interval,
     relative: [f64; N],
     short: bool,
 ) -> [f64; N] {
     if short {
-        let panel = GaussPanel::new(f, ends, &SHORT, true);
+        let panel = GaussPanel::new(f, over, &SHORT, true);
         if excess(&panel.sums, &panel.errors, &relative) <= 1.0 {
             return panel.sums;
         }
     }
-    halved(f, ends, relative, true)
+    halved(f, over, relative, true)
 }
 
 /// Computes integrals by panels that are halved; functions that are not `smooth` may have kinks.
 fn halved<const N: usize>(
     f: &mut impl FnMut(&[f64]) -> [Lanes; N],
-    ends: [f64; 2],
+    over: Interval,
     relative: [f64; N],
     smooth: bool,
 ) -> [f64; N] {
-    let first = GaussPanel::new(f, ends, &LONG, smooth);
+    let first = GaussPanel::new(f, over, &LONG, smooth);
     if excess(&first.sums, &first.errors, &relative) <= 1.0 {
         return first.sums;
     }
@@ -122,9 +123,8 @@ fn halved<const N: usize>(
             .max_by(|&p, &q| excess_of(&panels[p].errors).total_cmp(&excess_of(&panels[q].errors)));
         let enough = excess_of(&errors) <= 1.0 || panels.len() >= MOST_PANELS || idle >= IDLE_HALVINGS;
         let Some(worst) = worst.filter(|_| !enough) else { return sums };
-        let GaussPanel { ends: [a, b], errors, .. } = panels.swap_remove(worst);
-        let middle = a + (b - a) / 2.0;
-        let halves = [[a, middle], [middle, b]].map(|ends| GaussPanel::new(f, ends, &LONG, smooth));
+        let GaussPanel { over, errors, .. } = panels.swap_remove(worst);
+        let halves = over.halves().map(|half| GaussPanel::new(f, half, &LONG, smooth));
         let left = excess_of(&halves[0].errors) + excess_of(&halves[1].errors);
         idle += usize::from(left > NOISE_SHARE * excess_of(&errors));
         panels.extend(halves);
@@ -140,11 +140,11 @@ impl<const N: usize> GaussPanel<N> {
     /// Evaluates the Kronrod sums over an interval. Their errors are |Kronrod − Gauss|, and less for smooth functions.
     fn new<const K: usize, const G: usize>(
         f: &mut impl FnMut(&[f64]) -> [Lanes; N],
-        ends @ [a, b]: [f64; 2],
+        over: Interval,
         rule: &Rule<K, G>,
         smooth: bool,
     ) -> Self {
-        let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        let (centre, half) = (over.middle(), over.width() / 2.0);
         // Both nodes of a pair side by side, the centre last.
         let mut places = [centre; MANY];
         for (k, &node) in rule.nodes[..K - 1].iter().enumerate() {
@@ -169,7 +169,7 @@ impl<const N: usize> GaussPanel<N> {
                 *error = error.min(sum.abs() * share * share.sqrt());
             }
         }
-        Self { ends, sums, errors }
+        Self { over, sums, errors }
     }
 }
 

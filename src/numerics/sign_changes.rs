@@ -1,6 +1,7 @@
 //! All places at which a smooth function changes its sign, proved by its Chebyshev coefficients.
 
 use super::chebyshev::{NODES, PROOF, coefficients_by_vectors, derivative, value};
+use super::interval::Interval;
 use super::lanes::{Lanes, lanes, largest};
 use super::noise::measured;
 use super::roots::bracketed;
@@ -36,23 +37,24 @@ const NOISY: usize = 16;
 /// Cost: 16 values for most intervals. Degenerate: no place where `f` is NaN.
 pub fn sign_changes(
     mut f: impl FnMut(&Lanes) -> Lanes,
-    interval: [f64; 2],
+    interval: Interval,
     noise: f64,
     found: &mut Vec<f64>,
 ) {
     let first = found.len();
-    let shortest = SHORTEST * (interval[1] - interval[0]);
+    let shortest = SHORTEST * interval.width();
     let mut waiting = vec![(interval, noise)];
     let mut batches = 0;
-    while let Some(([a, b], noise)) = waiting.pop() {
-        let (middle, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
-        let place = |t: f64| (middle + half * t).clamp(a, b);
+    while let Some((interval, noise)) = waiting.pop() {
+        let (middle, half) = (interval.middle(), interval.width() / 2.0);
+        let place = |t: f64| interval.nearest(middle + half * t);
         let values = f(&lanes(|k| place(NODES[k])));
         batches += 1;
-        let short = half <= shortest || middle <= a || middle >= b || batches > MOST_BATCHES;
+        let inside = interval.low < middle && middle < interval.high;
+        let short = half <= shortest || !inside || batches > MOST_BATCHES;
         if values.iter().any(|value| value.is_nan()) {
             if !short && values.iter().any(|value| !value.is_nan()) {
-                waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
+                waiting.extend(interval.halves().map(|half| (half, noise)).into_iter().rev());
             }
             continue;
         }
@@ -74,8 +76,8 @@ pub fn sign_changes(
         } else if short || largest(&values) <= ZERO * error {
             found.push(middle);
         } else {
-            let noise = if batches > NOISY { noise.max(measured(&mut f, [a, b])) } else { noise };
-            waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
+            let noise = if batches > NOISY { noise.max(measured(&mut f, interval)) } else { noise };
+            waiting.extend(interval.halves().map(|half| (half, noise)).into_iter().rev());
         }
     }
     found[first..].sort_by(f64::total_cmp);
@@ -85,7 +87,7 @@ pub fn sign_changes(
 mod tests {
     use super::*;
 
-    fn changes(f: impl Fn(f64) -> f64, interval: [f64; 2]) -> (Vec<f64>, usize) {
+    fn changes(f: impl Fn(f64) -> f64, interval: Interval) -> (Vec<f64>, usize) {
         let (mut found, mut batches) = (Vec::new(), 0);
         let many = |x: &Lanes| {
             batches += 1;
@@ -97,10 +99,10 @@ mod tests {
 
     #[test]
     fn near_and_many_zeros_are_all_found() {
-        let (found, _) = changes(|x| (x - 0.1) * (x - 0.1001) * (x - 0.7), [-1.0, 1.0]);
+        let (found, _) = changes(|x| (x - 0.1) * (x - 0.1001) * (x - 0.7), Interval::new(-1.0, 1.0));
         assert_eq!(found.len(), 3, "{found:?}");
         assert!((found[0] - 0.1).abs() < 1e-9 && (found[2] - 0.7).abs() < 1e-13, "{found:?}");
-        let (found, _) = changes(|x| (40.0 * x).sin(), [0.05, 3.0]);
+        let (found, _) = changes(|x| (40.0 * x).sin(), Interval::new(0.05, 3.0));
         assert_eq!(found.len(), 38);
         for (k, x) in found.iter().enumerate() {
             assert!((x - std::f64::consts::PI * (k as f64 + 1.0) / 40.0).abs() < 1e-13, "{x}");
@@ -109,15 +111,15 @@ mod tests {
 
     #[test]
     fn a_zero_where_an_interval_is_halved_is_found() {
-        let (found, _) = changes(|x| x * (x * x - 0.5) * (x * x - 0.9), [-1.0, 1.0]);
+        let (found, _) = changes(|x| x * (x * x - 0.5) * (x * x - 0.9), Interval::new(-1.0, 1.0));
         assert!(found.iter().any(|x| x.abs() < 1e-14), "{found:?}");
     }
 
     #[test]
     fn what_stays_away_from_zero_takes_one_batch_and_what_is_no_number_ends() {
-        assert_eq!(changes(|x| 2.0 + x.sin(), [-1.0, 1.0]), (Vec::new(), 1));
-        let (found, batches) = changes(|x| (x - 0.25).sqrt() - 0.5, [0.0, 1.0]);
+        assert_eq!(changes(|x| 2.0 + x.sin(), Interval::new(-1.0, 1.0)), (Vec::new(), 1));
+        let (found, batches) = changes(|x| (x - 0.25).sqrt() - 0.5, Interval::new(0.0, 1.0));
         assert!(found.iter().any(|x| (x - 0.5).abs() < 1e-13) && batches < 400, "{found:?} {batches}");
-        assert_eq!(changes(|_| f64::NAN, [0.0, 1.0]).1, 1);
+        assert_eq!(changes(|_| f64::NAN, Interval::new(0.0, 1.0)).1, 1);
     }
 }

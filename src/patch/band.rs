@@ -6,6 +6,7 @@ use super::outline::{End, Outline};
 use super::slice::Slice;
 use super::stretch::{Fit, Stretch};
 use super::varying::SMOOTH;
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::numerics::quadrature::smooth_integrals;
@@ -35,11 +36,11 @@ pub(super) struct Turn {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Band {
     /// Range of ξ \[mm\].
-    pub(crate) xi: [f64; 2],
+    pub(crate) xi: Interval,
     /// What bounds the band at either end of `xi`; `None` where the component continues in other bands.
     pub(crate) ends: [Option<End>; 2],
     /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip.
-    pub(crate) sides: [[f64; 2]; 2],
+    pub(crate) sides: [Interval; 2],
     /// Pairs (ξ, valleys) by ascending ξ, empty without skew: the valleys that lie in the band up to that ξ, the deepest
     /// first. Slices are found from the deepest valley.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
@@ -48,7 +49,7 @@ pub(crate) struct Band {
     /// The edges between the corners, as if there were no window in η; by ascending ξ.
     pub(super) stretches: Vec<Stretch>,
     /// Range of η of the window \[mm\].
-    pub(super) window: [f64; 2],
+    pub(super) window: Interval,
 }
 
 impl Band {
@@ -64,27 +65,27 @@ impl Band {
     }
 
     /// Makes a band without corners and stretches; [`Self::fit`] finds the latter.
-    pub(super) fn new(xi: [f64; 2], ends: [Option<End>; 2], sides: [[f64; 2]; 2], window: [f64; 2]) -> Self {
+    pub(super) fn new(xi: Interval, ends: [Option<End>; 2], sides: [Interval; 2], window: Interval) -> Self {
         Self { xi, ends, sides, valleys: Vec::new(), corners: Vec::new(), stretches: Vec::new(), window }
     }
 
     /// Fits interpolants to the edges between the corners.
     pub(super) fn fit(&mut self, outline: &mut Outline<'_>) {
-        let length = self.xi[1] - self.xi[0];
-        let mut corners = vec![self.xi[0]];
+        let length = self.xi.width();
+        let mut corners = vec![self.xi.low];
         for &corner in &self.corners {
             let apart = |other: f64| (corner - other).abs() > ONE_CORNER * length;
-            if apart(corners[corners.len() - 1]) && apart(self.xi[1]) {
+            if apart(corners[corners.len() - 1]) && apart(self.xi.high) {
                 corners.push(corner);
             }
         }
-        corners.push(self.xi[1]);
-        let inside = |[low, high]: [f64; 2]| self.window[0] < low && high < self.window[1];
+        corners.push(self.xi.high);
+        let inside = |side: Interval| self.window.low < side.low && side.high < self.window.high;
         let zero = [0, 1].map(|end| {
-            let [low, high] = self.sides[end];
-            low == high && (self.ends[end] == Some(End::Tip) || inside([low, high]))
+            let side = self.sides[end];
+            side.low == side.high && (self.ends[end] == Some(End::Tip) || inside(side))
         });
-        let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end][0] < self.sides[end][1];
+        let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end].width() > 0.0;
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
@@ -110,7 +111,7 @@ impl Band {
         };
         let mut fit = Fit { edges, band: self.xi, zero, root, noise };
         for pair in corners.windows(2) {
-            fit.add([pair[0], pair[1]], &mut stretches);
+            fit.add(Interval::new(pair[0], pair[1]), &mut stretches);
         }
         self.stretches = stretches;
     }
@@ -122,7 +123,7 @@ impl Band {
         // The arc length is as large as both coordinates.
         let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
         let size = self.xi.map(|xi| height(xi) + xi.abs());
-        let middle = self.xi[0] + (self.xi[1] - self.xi[0]) / 2.0;
+        let middle = self.xi.middle();
         let valley = self.valley(middle);
         let depth = outline.slicer.depth_over(valley, middle).abs();
         let square: f64 = outline
@@ -132,11 +133,11 @@ impl Band {
         if outline.slicer.varying.is_some() {
             return SMOOTH * square;
         }
-        ROUNDINGS * f64::EPSILON * square * (1.0 + nan_max(size[0], size[1]) / depth)
+        ROUNDINGS * f64::EPSILON * square * (1.0 + nan_max(size.low, size.high) / depth)
     }
 
     fn stretch(&self, xi: f64) -> Option<&Stretch> {
-        let k = self.stretches.partition_point(|stretch| stretch.xi[1] < xi);
+        let k = self.stretches.partition_point(|stretch| stretch.xi.high < xi);
         self.stretches.get(k.min(self.stretches.len().saturating_sub(1)))
     }
 
@@ -146,7 +147,7 @@ impl Band {
             return Slice { eta: self.sides[end] };
         }
         let [[low], [high]] = self.stretch(xi).map_or([[f64::NAN]; 2], |stretch| stretch.edges(&[xi]));
-        Slice { eta: self.clipped([low, high]) }
+        Slice { eta: self.clipped(Interval::new(low, high)) }
     }
 
     /// Returns \[ξ, lower η, upper η\] \[mm\] at ascending ξ within `xi`.
@@ -154,7 +155,7 @@ impl Band {
         let mut rows = Vec::with_capacity(xi.len());
         while let Some(&first) = xi.get(rows.len()) {
             let rest = &xi[rows.len()..];
-            let last = self.stretch(first).map_or(first, |stretch| stretch.xi[1]);
+            let last = self.stretch(first).map_or(first, |stretch| stretch.xi.high);
             let count = rest.iter().take(MANY).take_while(|xi| **xi <= last).count().max(1);
             let own: Lanes = lanes(|k| rest[k.min(count - 1)]);
             let found =
@@ -162,45 +163,46 @@ impl Band {
             let [low, high] = found.unwrap_or([[f64::NAN; MANY]; 2]);
             rows.extend((0..count).map(|k| {
                 let end = (0..2).find(|&end| own[k] == self.xi[end]);
-                let [low, high] = end.map_or_else(|| self.clipped([low[k], high[k]]), |end| self.sides[end]);
-                [own[k], low, high]
+                let found = || self.clipped(Interval::new(low[k], high[k]));
+                let eta = end.map_or_else(found, |end| self.sides[end]);
+                [own[k], eta.low, eta.high]
             }));
         }
         rows
     }
 
     /// Cuts a slice off at the window.
-    fn clipped(&self, [low, high]: [f64; 2]) -> [f64; 2] {
-        let [from, to] = self.window;
-        [low.max(from).min(to), high.min(to).max(from)]
+    fn clipped(&self, eta: Interval) -> Interval {
+        let Interval { low, high } = self.window;
+        Interval::new(eta.low.max(low).min(high), eta.high.min(high).max(low))
     }
 
     /// Returns dη/dξ of one side at ξ, which is infinite at a tip and 0 along the window.
     pub(super) fn slope(&self, branch: usize, xi: f64) -> f64 {
         let Some(stretch) = self.stretch(xi) else { return f64::NAN };
         let [[[low], [high]], slopes] = stretch.edges_and_slopes(&[xi]);
-        if self.clipped([low, high])[branch] == [low, high][branch] { slopes[branch][0] } else { 0.0 }
+        if self.clipped(Interval::new(low, high))[branch] == [low, high][branch] { slopes[branch][0] } else { 0.0 }
     }
 
     /// Returns ∫ f dξ over a range within `xi` for several functions of ξ and the edges, which are given at 16 places at once, together
     /// with their slopes if `with_slopes`. Each integral has its own relative accuracy.
     pub(crate) fn integrals<const N: usize>(
         &self,
-        [from, to]: [f64; 2],
+        xi: Interval,
         with_slopes: bool,
         f: impl Fn(&Places) -> [Lanes; N],
         relative: [f64; N],
     ) -> [f64; N] {
         let grading = self.grading();
-        let ends = self.stretches.iter().map(|stretch| stretch.xi[1]).chain(self.corners.iter().copied());
-        let mut cuts: Vec<f64> = ends.filter(|xi| from < *xi && *xi < to).chain([to]).collect();
+        let ends = self.stretches.iter().map(|stretch| stretch.xi.high).chain(self.corners.iter().copied());
+        let mut cuts: Vec<f64> = ends.filter(|cut| xi.low < *cut && *cut < xi.high).chain([xi.high]).collect();
         cuts.sort_by(f64::total_cmp);
         // The ends of the parameter are exactly 0 and 1, in spite of rounding.
-        let parameter = |xi: f64| match self.xi.iter().position(|end| *end == xi) {
+        let parameter = |xi: f64| match self.xi.ends().iter().position(|end| *end == xi) {
             Some(end) => end as f64,
             None => grading.parameter(xi),
         };
-        let (mut sums, mut begin) = ([0.0; N], (from, parameter(from)));
+        let (mut sums, mut begin) = ([0.0; N], (xi.low, parameter(xi.low)));
         for cut in cuts {
             let end = (cut, parameter(cut));
             let Some(stretch) = self.stretch(cut).filter(|_| begin.0 < cut) else { continue };
@@ -214,7 +216,7 @@ impl Band {
                 let places = pulp::Arch::new().dispatch(at).clipped(self.window);
                 f(&places).map(|values| lanes(|k| values[k] * places.rate[k]))
             };
-            let part = smooth_integrals(&mut weighted, [begin.1, end.1], relative, false);
+            let part = smooth_integrals(&mut weighted, Interval::new(begin.1, end.1), relative, false);
             sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
             begin = end;
         }
@@ -228,7 +230,7 @@ impl Band {
     }
 
     /// Returns the ranges of t between neighbouring corners.
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = [f64; 2]> {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> {
         let (grading, last) = (self.grading(), self.corners.len().saturating_sub(1));
         // The ends are exactly 0 and 1, in spite of rounding.
         let parameter = move |k: usize| match k {
@@ -236,13 +238,13 @@ impl Band {
             k if k == last => 1.0,
             k => grading.parameter(self.corners[k]),
         };
-        (1..self.corners.len()).map(move |k| [parameter(k - 1), parameter(k)])
+        (1..self.corners.len()).map(move |k| Interval::new(parameter(k - 1), parameter(k)))
     }
 
     /// Returns whether the component continues in `next`: this band ends where `next` begins, and their slices overlap
     /// there.
     pub(crate) fn meets(&self, next: &Self) -> bool {
-        self.xi[1] == next.xi[0] && overlap(self.sides[1], next.sides[0])
+        self.xi.high == next.xi.low && overlap(self.sides[1], next.sides[0])
     }
 }
 
@@ -261,11 +263,11 @@ pub(crate) struct Places {
 
 impl Places {
     /// Cuts the edges off at the window, along which their slopes are 0.
-    fn clipped(mut self, [from, to]: [f64; 2]) -> Self {
+    fn clipped(mut self, window: Interval) -> Self {
         for branch in 0..2 {
             for (eta, slope) in self.edges[branch].iter_mut().zip(&mut self.slopes[branch]) {
-                if !(from <= *eta && *eta <= to) {
-                    (*eta, *slope) = (eta.max(from).min(to), 0.0);
+                if !window.contains(*eta) {
+                    (*eta, *slope) = (window.nearest(*eta), 0.0);
                 }
             }
         }
@@ -319,19 +321,19 @@ fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f6
 }
 
 /// Returns whether two intervals have more than a point in common.
-pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> bool {
-    a[0].max(b[0]) < a[1].min(b[1])
+pub(super) fn overlap(a: Interval, b: Interval) -> bool {
+    a.cut(b).width() > 0.0
 }
 
 /// Returns the ξ inside (a, b) at which a body's surface steps or ends because its profile overhangs. `extent` is that of
 /// the profile.
-pub(super) fn steps(section: &Section, [a, b]: [f64; 2], extent: f64) -> impl Iterator<Item = f64> {
+pub(super) fn steps(section: &Section, xi: Interval, extent: f64) -> impl Iterator<Item = f64> {
     let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;
     let torn = move |k: usize| {
         let [left, right] = [&section.pieces[k - 1], &section.pieces[k]];
-        left.xi[1] != right.xi[0] || (left.heights[1] - right.heights[0]).abs() > rounding
+        left.xi.high != right.xi.low || (left.heights[1] - right.heights[0]).abs() > rounding
     };
     let torn = (1..section.pieces.len()).filter(move |&k| torn(k));
-    let ends = torn.flat_map(|k| [section.pieces[k - 1].xi[1], section.pieces[k].xi[0]]);
-    ends.filter(move |xi| a < *xi && *xi < b)
+    let ends = torn.flat_map(|k| [section.pieces[k - 1].xi.high, section.pieces[k].xi.low]);
+    ends.filter(move |end| xi.low < *end && *end < xi.high)
 }

@@ -11,6 +11,7 @@ use super::skewed::lanes;
 use super::slice::Slice;
 use super::varying;
 use crate::conformal::Reference;
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 
 /// Number of points on each of the two sides of a loop. The polygon then lies within 1e-4 of the patch's width of the
@@ -28,11 +29,11 @@ const REACH_SLICES: usize = 8;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
     /// Range of ξ \[mm\].
-    pub xi: [f64; 2],
+    pub xi: Interval,
     /// What bounds the component at either end of its range of ξ.
     pub ends: [End; 2],
     /// Range of η \[mm\].
-    pub eta: [f64; 2],
+    pub eta: Interval,
     /// Both ends of the range of ξ, and every ξ between them where the boundary may have a corner \[mm\],
     /// ascending.
     pub corners: Vec<f64>,
@@ -68,8 +69,8 @@ pub struct Component {
 /// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
 /// let component = &patch.components[0];
 /// let half = f64::sqrt(300.0 * 300.0 - 299.95 * 299.95);
-/// assert!((component.xi[1] - half).abs() < 1e-11);
-/// assert!((patch.area() / (std::f64::consts::PI * half * component.eta[1]) - 1.0).abs() < 1e-3); // nearly an ellipse
+/// assert!((component.xi.high - half).abs() < 1e-11);
+/// assert!((patch.area() / (std::f64::consts::PI * half * component.eta.high) - 1.0).abs() < 1e-3); // nearly an ellipse
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -114,13 +115,12 @@ impl Patch {
 
     /// Returns the components inside another window, or `None` if that window cuts a component.
     pub fn within(&self, window: &Window) -> Option<Self> {
-        let inside = |inner: [f64; 2], outer: [f64; 2]| outer[0] < inner[0] && inner[1] < outer[1];
-        let apart = |a: [f64; 2], b: [f64; 2]| a[1] < b[0] || b[1] < a[0];
+        let inside = |inner: Interval, outer: Interval| outer.low < inner.low && inner.high < outer.high;
         let mut components = Vec::new();
         for component in &self.components {
             if inside(component.xi, window.xi) && inside(component.eta, window.eta) {
                 components.push(component.clone());
-            } else if !apart(component.xi, window.xi) && !apart(component.eta, window.eta) {
+            } else if component.xi.meets(window.xi) && component.eta.meets(window.eta) {
                 return None;
             }
         }
@@ -133,8 +133,8 @@ impl Patch {
         let mut slices = Vec::new();
         for (index, component) in self.components.iter().enumerate() {
             let bands = &component.bands;
-            let ended = bands.iter().any(|band| band.xi[1] == xi);
-            let over = |band: &&Band| (band.xi[0] < xi && xi <= band.xi[1]) || (xi == band.xi[0] && !ended);
+            let ended = bands.iter().any(|band| band.xi.high == xi);
+            let over = |band: &&Band| (band.xi.low < xi && xi <= band.xi.high) || (xi == band.xi.low && !ended);
             slices.extend(bands.iter().filter(over).map(|band| (index, band.slice(xi))));
         }
         slices
@@ -152,9 +152,7 @@ impl Patch {
 
     /// Returns the smallest box around all components, or `None` for an empty patch.
     pub fn extent(&self) -> Option<Window> {
-        let mut components = self.components.iter();
-        let first = components.next()?;
-        Some(components.fold(Window { xi: first.xi, eta: first.eta }, |window, c| window.with(c.xi, c.eta)))
+        self.components.iter().map(|c| Window { xi: c.xi, eta: c.eta }).reduce(Window::hull)
     }
 }
 
@@ -175,7 +173,7 @@ fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
     } else {
         plain::bands(outline)
     };
-    bands.sort_by(|a, b| a.xi[0].total_cmp(&b.xi[0]));
+    bands.sort_by(|a, b| a.xi.low.total_cmp(&b.xi.low));
     let meeting: Vec<[usize; 2]> = (0..bands.len())
         .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
         .filter(|&[i, j]| bands[i].meets(&bands[j]))
@@ -202,9 +200,8 @@ fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
 }
 
 impl Region {
-    fn xi(&self) -> [f64; 2] {
-        let ends = self.bands.iter().map(|band| band.xi);
-        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], xi| [a.min(xi[0]), b.max(xi[1])])
+    fn xi(&self) -> Interval {
+        self.bands.iter().fold(Interval::NONE, |xi, band| xi.hull(band.xi))
     }
 
     /// Returns what bounds the component at either end of its range of ξ.
@@ -224,7 +221,7 @@ impl Region {
         let rows = self.rows(outline, known.map(|known| known[0]));
         let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
         let window = outline.window.eta;
-        let at_window = |row: &[f64; 3]| row[1] == window[0] || row[2] == window[1];
+        let at_window = |row: &[f64; 3]| row[1] == window.low || row[2] == window.high;
         let cut_by_window = self.bands.iter().any(|band| band.ends.contains(&Some(End::Window)))
             || rows.iter().flatten().any(at_window);
         let mut loops = loops::loops(&self.bands, &rows);
@@ -259,13 +256,12 @@ impl Region {
     /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\], known
     /// without skew.
     fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
-        let [a, b] = self.xi();
+        let whole = self.xi().width();
         let varying = outline.slicer.varying.is_some();
         let plain = outline.slicer.placement().skew() == 0.0 && !varying;
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
-            let [from, to] = band.xi;
-            band.corners = [from, to].into_iter().chain(outline.slicer.joints(band.xi)).collect();
+            band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
             if let Some(least) = least {
                 corners::plain(outline, band, least, &mut more);
@@ -278,10 +274,10 @@ impl Region {
             band.fit(outline);
             if varying {
                 // Its interpolants are smooth between their own ends only.
-                band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi[1]));
+                band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi.high));
                 sort(&mut band.corners);
             }
-            let mut rows: Rows = band.rows(&graded(band, b - a));
+            let mut rows: Rows = band.rows(&graded(band, whole));
             corners::at_window(band, &rows, &mut more);
             if !more.is_empty() {
                 rows.extend(more.iter().map(|&xi| row(band, xi)));
@@ -299,19 +295,19 @@ impl Region {
     /// Returns \[s, ξ, η\] of the smallest s. The candidates are C, the component's ends, and the places where s turns along the valleys
     /// of the component and is not known to be larger; if the window cuts a valley off, also the points of the loops.
     fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
-        let mut least = [f64::NAN, self.xi()[0], 0.0];
+        let mut least = [f64::NAN, self.xi().low, 0.0];
         let take = |least: &mut [f64; 3], found: [f64; 3]| {
             if found[0] < least[0] || least[0].is_nan() {
                 *least = found;
             }
         };
         for (k, band) in self.bands.iter().enumerate() {
-            let holds = |xi: f64| band.xi[0] <= xi && xi <= band.xi[1];
+            let holds = |xi: f64| band.xi.contains(xi);
             let mut places = Vec::new();
             // C is the first candidate, so that it is chosen if s² underflows at several.
             places.extend(holds(0.0).then_some(0.0));
-            places.extend(band.xi);
-            let cut = outline.window.eta.into_iter().any(f64::is_finite) && !band.valleys.is_empty();
+            places.extend(band.xi.ends());
+            let cut = outline.window.eta.ends().into_iter().any(f64::is_finite) && !band.valleys.is_empty();
             places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
             for xi in places {
                 for &valley in band.valleys_at(xi) {
@@ -336,27 +332,26 @@ impl Region {
 
 /// Returns ξ and both edges of a band there.
 fn row(band: &Band, xi: f64) -> [f64; 3] {
-    let [low, high] = band.slice(xi).eta;
+    let [low, high] = band.slice(xi).eta.ends();
     [xi, low, high]
 }
 
 /// Returns a range of η that holds a band, or nearly: twice that of some slices.
-fn reach(outline: &mut Outline<'_>, band: &Band) -> [f64; 2] {
+fn reach(outline: &mut Outline<'_>, band: &Band) -> Interval {
     let grading = band.grading();
-    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut range = Interval::NONE;
     for k in 0..=REACH_SLICES {
-        let xi = grading.xi(k as f64 / REACH_SLICES as f64).clamp(band.xi[0], band.xi[1]);
+        let xi = band.xi.nearest(grading.xi(k as f64 / REACH_SLICES as f64));
         for edge in outline.slicer.edges(xi, band.valley(xi)).into_iter().flatten() {
-            range = [range[0].min(edge.eta), range[1].max(edge.eta)];
+            range = range.with(edge.eta);
         }
     }
-    let more = (range[1] - range[0]) / 2.0;
-    [range[0] - more, range[1] + more]
+    range.grown(range.width() / 2.0)
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.
 fn add_farthest(band: &Band, plain: bool, rows: &mut Rows) {
-    let symmetric = plain && band.window[0] == -band.window[1];
+    let symmetric = plain && band.window.low == -band.window.high;
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();
     for &branch in branches {
@@ -378,21 +373,19 @@ fn sort(numbers: &mut Vec<f64>) {
 }
 
 /// Returns the range of η over all rows.
-fn across(rows: &[Rows]) -> [f64; 2] {
-    rows.iter()
-        .flatten()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| [low.min(row[1]), high.max(row[2])])
+fn across(rows: &[Rows]) -> Interval {
+    rows.iter().flatten().fold(Interval::NONE, |eta, row| eta.hull(Interval::new(row[1], row[2])))
 }
 
 /// Returns every corner of a band, and ξ between two corners, which crowd towards round ends. `whole` is the length of the
 /// component along ξ.
 fn graded(band: &Band, whole: f64) -> Vec<f64> {
-    let (grading, share) = (band.grading(), (band.xi[1] - band.xi[0]) / whole);
+    let (grading, share) = (band.grading(), band.xi.width() / whole);
     let mut nodes = Vec::with_capacity(2 * POINTS_PER_SIDE);
     nodes.push(band.corners[0]);
-    for (piece, [from, to]) in band.pieces().enumerate() {
-        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share * (to - from)).round() as usize);
-        nodes.extend((1..n).map(|k| grading.xi(from + (to - from) * k as f64 / n as f64)));
+    for (piece, t) in band.pieces().enumerate() {
+        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share * t.width()).round() as usize);
+        nodes.extend((1..n).map(|k| grading.xi(t.low + t.width() * k as f64 / n as f64)));
         nodes.push(band.corners[piece + 1]);
     }
     nodes.dedup();

@@ -3,6 +3,7 @@
 use super::band::Band;
 use super::loops::Rows;
 use super::outline::Outline;
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 
 /// Distance from a band up to which joints of the wheel are examined, as a multiple of the band's depth × sinθ. It is
@@ -29,12 +30,12 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
     }
     let frame = placement.wheel().section.frame;
     let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
-    let [a, b] = band.xi;
-    for (p, height) in placement.wheel().section.joints([a - far, b + far]) {
+    let inside = |xi: f64| band.xi.low < xi && xi < band.xi.high;
+    for (p, height) in placement.wheel().section.joints(band.xi.grown(far)) {
         let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
         if frame.sin == 0.0 || miss(0.0) >= 0.0 {
             if frame.sin == 0.0 {
-                corners.extend((a < p && p < b).then_some(p));
+                corners.extend(inside(p).then_some(p));
             }
             continue;
         }
@@ -46,17 +47,17 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
             high *= 2.0;
         }
         let root = bracketed(miss, 0.0, high).map(|e| p + e * frame.sin);
-        corners.extend(root.filter(|&xi| a < xi && xi < b));
+        corners.extend(root.filter(|&xi| inside(xi)));
     }
 }
 
 /// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel. `eta` is the
 /// range of η of the band.
-pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners: &mut Vec<f64>) {
+pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
     let Some(skewed) = &outline.slicer.skewed else { return };
     let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail().section);
-    let [a, b] = band.xi;
-    skewed.valleys.circles([a, b], eta, |place, [from, to]| {
+    let inside = |xi: f64| band.xi.low < xi && xi < band.xi.high;
+    skewed.valleys.circles(band.xi, eta, |place, [from, to]| {
         let depth = |t: f64| {
             let [xi, height] = place(t);
             height - rail.height(xi) - approach
@@ -67,7 +68,7 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: [f64; 2], corners:
             let here = depth(at(k));
             if before * here < 0.0 {
                 let root = bracketed(depth, at(k - 1), at(k)).map(|t| place(t)[0]);
-                corners.extend(root.filter(|&xi| a < xi && xi < b));
+                corners.extend(root.filter(|&xi| inside(xi)));
             }
             before = here;
         }

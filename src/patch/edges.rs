@@ -11,6 +11,7 @@
 //! m, w and ϱ hardly change with y, so that the quadratic equation is solved anew with those of its last solution. It contracts by about e
 //! × curvature and tanχ × the turn of the profile, and it is exact at the tips, where y² follows without a difference of large numbers.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::placement::Placement;
 use crate::profile::{Branch, Piece, Section};
@@ -64,8 +65,8 @@ impl<'a> EdgeFinder<'a> {
     /// side. Returns `None` unless the rail has one piece there, each edge lies over one piece of the wheel, which is no wall, and the wheel
     /// has no step on the way.
     pub(super) fn edges(&mut self, xi: &Lanes) -> Option<[Lanes; 2]> {
-        let (rail, [first, last]) = (self.rail.piece_at(xi[0])?, self.wheel.section.reach()?);
-        let [low, high] = [rail.xi[0].max(first), rail.xi[1].min(last)];
+        let rail = self.rail.piece_at(xi[0])?;
+        let Interval { low, high } = rail.xi.cut(self.wheel.section.reach()?);
         if !every::<MANY>(|k| (low <= xi[k]) & (xi[k] <= high)) {
             return None;
         }
@@ -80,7 +81,7 @@ impl<'a> EdgeFinder<'a> {
         let middle = xi[MANY / 2];
         let mut index = self.pieces[side].map_or_else(|| index_at(section, middle), Some)?;
         let inside = |index: usize, foot: f64| {
-            let [low, high] = section.pieces[index].xi;
+            let Interval { low, high } = section.pieces[index].xi;
             (low <= foot) & (foot <= high)
         };
         for _ in 0..PIECES {
@@ -91,14 +92,14 @@ impl<'a> EdgeFinder<'a> {
             index = index_at(section, foot)?;
         }
         self.pieces[side] = Some(index);
-        let [low, high] = section.slopes(index);
-        if !(-STEEPEST < low && high < STEEPEST) {
+        let slopes = section.slopes(index);
+        if !(-STEEPEST < slopes.low && slopes.high < STEEPEST) {
             return None;
         }
         let [eta, foot] = self.arch.dispatch(Solve { finder: self, xi, rail, index, side })?;
         let passed = |step: &usize| {
-            let joint = section.pieces[*step].xi[0];
-            let end = section.pieces[*step - 1].xi[1];
+            let joint = section.pieces[*step].xi.low;
+            let end = section.pieces[*step - 1].xi.high;
             (0..MANY).any(|k| xi[k].min(foot[k]) <= joint && end <= xi[k].max(foot[k]))
         };
         (every::<MANY>(|k| inside(index, foot[k])) && !section.steps.iter().any(passed)).then_some(eta)
@@ -117,8 +118,7 @@ impl<'a> EdgeFinder<'a> {
         let (wheel, outwards) = (&self.wheel, if side == 0 { -1.0 } else { 1.0 });
         let piece = &wheel.section.pieces[index];
         let branch = &wheel.section.branches[piece.branch];
-        let [low, high] = piece.xi;
-        let begin: Lanes<N> = lanes(|k| xi[k].max(low).min(high));
+        let begin: Lanes<N> = lanes(|k| piece.xi.nearest(xi[k]));
         let (points, height) = branch.points(&begin)?;
         let (_, rail_height) = self.rail.branches[rail.branch].points(xi)?;
         let gap = self.gaps(xi, &begin, rail.branch, (piece.branch, &height), &rail_height)?;

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, lanes, sines_cosines};
 
 /// ξ as a function of t in \[0, 1\] in which the width of a patch is smooth. Equal steps of t crowd towards round ends,
@@ -9,7 +10,7 @@ use crate::numerics::lanes::{Lanes, lanes, sines_cosines};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grading {
     /// Ends of the range of ξ \[mm\].
-    pub(crate) xi: [f64; 2],
+    pub(crate) xi: Interval,
     /// Whether each end is round. Tips are; ends of a profile are too, because the columns of a tilted wheel reach them as
     /// a square root.
     pub(crate) round: [bool; 2],
@@ -28,7 +29,7 @@ impl Grading {
         let [sin, cos]: [Lanes<N>; 2] = sines_cosines(&lanes(|k| FRAC_PI_4 * t[k]));
         // Sine and cosine of π t/2.
         let twice = |k: usize| [2.0 * sin[k] * cos[k], (cos[k] - sin[k]) * (cos[k] + sin[k])];
-        let [from, length] = [self.xi[0], self.xi[1] - self.xi[0]];
+        let (from, length) = (self.xi.low, self.xi.width());
         let xi = lanes(|k| {
             let share = match self.round {
                 [true, true] => twice(k)[0] * twice(k)[0],
@@ -52,7 +53,7 @@ impl Grading {
 
     /// Returns the parameter t of ξ.
     pub(crate) fn parameter(&self, xi: f64) -> f64 {
-        let share = (xi - self.xi[0]) / (self.xi[1] - self.xi[0]);
+        let share = (xi - self.xi.low) / self.xi.width();
         match self.round {
             [true, true] => share.sqrt().asin() / FRAC_PI_2,
             [true, false] => (share / 2.0).sqrt().asin() / (FRAC_PI_2 / 2.0),
@@ -69,7 +70,7 @@ mod tests {
     #[test]
     fn gradings_and_their_inverses() {
         for round in [[true, true], [true, false], [false, true], [false, false]] {
-            let grading = Grading { xi: [-2.0, 5.0], round };
+            let grading = Grading { xi: Interval::new(-2.0, 5.0), round };
             assert_eq!(grading.xi(0.0), -2.0);
             assert!((grading.xi(1.0) - 5.0).abs() < 1e-14);
             for t in [0.0, 0.1, 0.5, 0.9] {

@@ -1,6 +1,7 @@
 //! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
 
 use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
@@ -59,10 +60,9 @@ impl<'a> Level<'a> {
         match self {
             Self::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1,
             Self::Rail { gap, .. } => {
-                let [low, high] = gap.rail().reach().unwrap_or([f64::NAN; 2]);
-                let ends = [(xi - HALF_STEP).max(low), (xi + HALF_STEP).min(high)];
-                let [a, b] = ends.map(|xi| self.gap(xi, eta));
-                [(b - a) / (ends[1] - ends[0]), self.slope(xi, eta)]
+                let reach = gap.rail().reach().unwrap_or(Interval::of(f64::NAN));
+                let ends = Interval::of(xi).grown(HALF_STEP).cut(reach);
+                [ends.map(|xi| self.gap(xi, eta)).width() / ends.width(), self.slope(xi, eta)]
             }
         }
     }

@@ -5,6 +5,7 @@
 //! right.
 
 use super::band::Band;
+use crate::numerics::interval::Interval;
 
 /// A side of a band, as part of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,13 +107,11 @@ pub(super) fn enclosed(points: &[[f64; 2]]) -> f64 {
 /// Returns the length \[mm\] of the boundary along lines of constant ξ: there bands end or begin and no other band
 /// continues.
 pub(super) fn walls(bands: &[Band]) -> f64 {
-    let width = |[low, high]: [f64; 2]| (high - low).max(0.0);
+    let width = |side: Interval| side.width().max(0.0);
     let sides = bands.iter().flat_map(|band| band.sides).map(width).sum::<f64>();
     let common = bands.iter().flat_map(|left| bands.iter().map(move |right| (left, right)));
-    let common = common.filter(|(left, right)| left.xi[1] == right.xi[0]).map(|(left, right)| {
-        let [a, b] = [left.sides[1], right.sides[0]];
-        width([a[0].max(b[0]), a[1].min(b[1])])
-    });
+    let common = common.filter(|(left, right)| left.xi.high == right.xi.low);
+    let common = common.map(|(left, right)| width(left.sides[1].cut(right.sides[0])));
     sides - 2.0 * common.sum::<f64>()
 }
 
@@ -121,7 +120,7 @@ mod tests {
     use super::*;
 
     fn band(xi: [f64; 2], sides: [[f64; 2]; 2]) -> Band {
-        Band::new(xi, [None; 2], sides, [f64::NEG_INFINITY, f64::INFINITY])
+        Band::new(xi.into(), [None; 2], sides.map(Interval::from), Interval::ALL)
     }
 
     /// Returns the loops of bands with straight sides.

@@ -6,6 +6,7 @@ use super::skewed::circle::{BESIDE, Turned};
 use super::skewed::slicer::Edge;
 use super::slice::Slicer;
 use crate::conformal::Reference;
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
@@ -17,20 +18,18 @@ const SLOPE_NOISE: f64 = 1e-11;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Window {
     /// Range of ξ \[mm\].
-    pub xi: [f64; 2],
+    pub xi: Interval,
     /// Range of η \[mm\].
-    pub eta: [f64; 2],
+    pub eta: Interval,
 }
 
 impl Window {
     /// The whole plane: only the ends of the bodies bound the patch.
-    pub const UNBOUNDED: Self =
-        Self { xi: [f64::NEG_INFINITY, f64::INFINITY], eta: [f64::NEG_INFINITY, f64::INFINITY] };
+    pub const UNBOUNDED: Self = Self { xi: Interval::ALL, eta: Interval::ALL };
 
-    /// Returns the smallest window that holds this one and two ranges.
-    pub(crate) fn with(self, xi: [f64; 2], eta: [f64; 2]) -> Self {
-        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        Self { xi: join(self.xi, xi), eta: join(self.eta, eta) }
+    /// Returns the smallest window that holds both.
+    pub(crate) fn hull(self, other: Self) -> Self {
+        Self { xi: self.xi.hull(other.xi), eta: self.eta.hull(other.eta) }
     }
 }
 
@@ -67,21 +66,21 @@ impl<'a> Outline<'a> {
     }
 
     /// Returns all ξ inside (a, b) at which s along the line of constant η may turn or step \[mm\], ascending.
-    pub(super) fn turns_along(&mut self, eta: f64, [a, b]: [f64; 2]) -> Vec<f64> {
+    pub(super) fn turns_along(&mut self, eta: f64, over: Interval) -> Vec<f64> {
         let placement = self.slicer.placement();
         let (turned, wheel) = (Turned::new(placement), &placement.wheel().section);
         let beside = BESIDE * placement.rolling_radius();
-        let ends = wheel.pieces.iter().enumerate().flat_map(|(k, piece)| piece.xi.map(|p| (k, p)));
+        let ends = wheel.pieces.iter().enumerate().flat_map(|(k, piece)| piece.xi.ends().map(|p| (k, p)));
         let crossed = ends.map(|(k, p)| turned.xi_at(k, p, eta)).flat_map(|xi| [xi - beside, xi + beside]);
-        let joints = placement.rail().section.joints([a, b]).flat_map(|(xi, _)| [xi, xi.next_up()]);
+        let joints = placement.rail().section.joints(over).flat_map(|(xi, _)| [xi, xi.next_up()]);
         let mut places: Vec<f64> =
-            crossed.chain(joints).chain([a, b]).filter(|xi| a <= *xi && *xi <= b).collect();
+            crossed.chain(joints).chain(over.ends()).filter(|xi| over.contains(*xi)).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
         let mut turns = Vec::new();
         for pair in places.windows(2) {
             let slope = |xi: &Lanes| xi.map(|xi| self.slicer.gradient(xi, eta)[0]);
-            sign_changes(slope, [pair[0], pair[1]], SLOPE_NOISE, &mut turns);
+            sign_changes(slope, Interval::new(pair[0], pair[1]), SLOPE_NOISE, &mut turns);
         }
         places.append(&mut turns);
         places.sort_by(f64::total_cmp);
@@ -89,12 +88,12 @@ impl<'a> Outline<'a> {
     }
 
     fn clipped(&self, [mut low, mut high]: [Edge; 2]) -> Option<[Edge; 2]> {
-        let [from, to] = self.window.eta;
-        if low.eta < from {
-            low = Edge { eta: from, ledge: false };
+        let window = self.window.eta;
+        if low.eta < window.low {
+            low = Edge { eta: window.low, ledge: false };
         }
-        if high.eta > to {
-            high = Edge { eta: to, ledge: false };
+        if high.eta > window.high {
+            high = Edge { eta: window.high, ledge: false };
         }
         (low.eta <= high.eta).then_some([low, high])
     }
@@ -102,15 +101,9 @@ impl<'a> Outline<'a> {
     /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
     /// window's edge next to it, because s rises away from the valley.
     pub(super) fn floor(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        let ([from, to], lowest) = (self.window.eta, self.slicer.valley(valley, xi));
+        let lowest = self.slicer.valley(valley, xi);
         // NaN stays NaN: there is no surface.
-        if lowest < from {
-            from
-        } else if lowest > to {
-            to
-        } else {
-            lowest
-        }
+        if lowest.is_nan() { lowest } else { self.window.eta.nearest(lowest) }
     }
 
     /// Returns s − δ \[mm\] at the place of a valley, or at the window's edge next to it. It is infinite if s rises above δ

@@ -3,6 +3,7 @@
 use super::band::{Band, Turn, steps};
 use super::outline::{End, Outline, Window};
 use crate::conformal::Reference;
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 use crate::placement::Placement;
@@ -16,17 +17,18 @@ const WINDOW_INTERVALS: usize = 512;
 /// At a joint the gap may step (an overhang). An interval between turning points that begins there is judged by a value of its own.
 pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
     let placement = outline.slicer.placement();
-    let Some([first, last]) = outline.slicer.reach() else { return (Vec::new(), Vec::new()) };
-    let [a, b] = [first.max(outline.window.xi[0]), last.min(outline.window.xi[1])];
+    let Some(reach) = outline.slicer.reach() else { return (Vec::new(), Vec::new()) };
+    let over = reach.cut(outline.window.xi);
+    let [a, b] = over.ends();
     if a.is_nan() || b.is_nan() || a >= b {
         return (Vec::new(), Vec::new());
     }
-    let turns = turns_of_depth(outline, a, b);
+    let turns = turns_of_depth(outline, over);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     let mut torn: Vec<f64> = Vec::new();
     if !outline.slicer.is_over_rail() {
-        torn.extend(steps(&placement.rail().section, [a, b], extent));
-        torn.extend(steps(&placement.wheel().section, [a, b], extent));
+        torn.extend(steps(&placement.rail().section, over, extent));
+        torn.extend(steps(&placement.wheel().section, over, extent));
     }
     let mut bands = Vec::new();
     let mut begun: Option<(f64, Option<End>)> = None;
@@ -41,7 +43,7 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
         let from = if judged_beside { at(outline, pair[0].next_up()) } else { before };
         let (p, q) = (from.xi, pair[1]);
         let inside = [from, here].map(|place| place.depth < 0.0);
-        let step = if pair[0] == a && a != first { End::Window } else { End::ProfileEnd };
+        let step = if pair[0] == a && a != reach.low { End::Window } else { End::ProfileEnd };
         begun = match begun {
             Some(begin) if !inside[0] => {
                 bands.push(closed(outline, begin, (pair[0], Some(step))));
@@ -66,19 +68,19 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
         }
     }
     if let Some(begin) = begun {
-        let end = if b == last { End::ProfileEnd } else { End::Window };
+        let end = if b == reach.high { End::ProfileEnd } else { End::Window };
         bands.push(closed(outline, begin, (b, Some(end))));
     }
-    bands.retain(|band| band.xi[0] < band.xi[1]);
+    bands.retain(|band| band.xi.width() > 0.0);
     (bands, places)
 }
 
 /// Finds \[s, ξ, η\] \[mm\] of the least s of a wheel on a roller; `None` where the bodies nowhere lie over each other.
 pub(crate) fn least_on_roller(placement: &Placement) -> Option<[f64; 3]> {
-    let [a, b] = placement.rail().section.reach()?;
+    let reach = placement.rail().section.reach()?;
     let mut outline = Outline::new(placement, 0.0, &Window::UNBOUNDED, Reference::Plane);
     // C comes first: rounding may put a turn next to it.
-    let places = std::iter::once(0.0).chain(turns_of_depth(&mut outline, a, b));
+    let places = std::iter::once(0.0).chain(turns_of_depth(&mut outline, reach));
     let found: Vec<_> =
         places.map(|xi| outline.lowest(None, xi)).filter(|least| !least[0].is_nan()).collect();
     found.into_iter().min_by(|p, q| p[0].total_cmp(&q[0]))
@@ -95,31 +97,32 @@ fn closed(
     let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
     let sides = places.map(|(end, xi)| {
         let edges = outline.edges(None, xi).filter(|_| end != Some(End::Tip));
-        edges.map_or_else(|| [outline.floor(None, xi); 2], |edges| edges.map(|edge| edge.eta))
+        edges.map_or_else(|| Interval::of(outline.floor(None, xi)), |[low, high]| Interval::new(low.eta, high.eta))
     });
-    Band::new([from, to], [begin, end], sides, outline.window.eta)
+    Band::new(Interval::new(from, to), [begin, end], sides, outline.window.eta)
 }
 
 /// Returns a, b, and all ξ between them where the depth may turn: joints and stationary points. The depth is monotone
 /// between neighbours.
-fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
+fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
+    let [a, b] = over.ends();
     let over_rail = outline.slicer.is_over_rail();
     let mut points = if over_rail {
         let c = Some(0.0).filter(|c| a < *c && *c < b);
-        [a, b].into_iter().chain(c).chain(outline.slicer.joints([a, b])).collect()
+        [a, b].into_iter().chain(c).chain(outline.slicer.joints(over)).collect()
     } else {
         turning_points(outline.slicer.placement(), a, b)
     };
     let placement = outline.slicer.placement();
     let (skewed, on_roller) = (placement.skew() != 0.0, placement.under().is_some());
     if over_rail || (on_roller && (skewed || outline.floor(None, a) != 0.0)) {
-        points.extend(sampled_turns(outline, &points, [a, b]));
+        points.extend(sampled_turns(outline, &points, over));
     } else {
         let floor = outline.floor(None, a);
         if floor == 0.0 {
             return points;
         }
-        points.extend(outline.turns_along(floor, [a, b]));
+        points.extend(outline.turns_along(floor, over));
     }
     points.sort_by(f64::total_cmp);
     points.dedup();
@@ -127,9 +130,9 @@ fn turns_of_depth(outline: &mut Outline<'_>, a: f64, b: f64) -> Vec<f64> {
 }
 
 /// Returns equal steps of ξ and the turns of the depth between these and known places.
-fn sampled_turns(outline: &mut Outline<'_>, known: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {
-    let step = (b - a) / WINDOW_INTERVALS as f64;
-    let mut places: Vec<f64> = (1..WINDOW_INTERVALS).map(|k| a + step * k as f64).collect();
+fn sampled_turns(outline: &mut Outline<'_>, known: &[f64], over: Interval) -> Vec<f64> {
+    let step = over.width() / WINDOW_INTERVALS as f64;
+    let mut places: Vec<f64> = (1..WINDOW_INTERVALS).map(|k| over.low + step * k as f64).collect();
     let samples = places.clone();
     places.extend(known);
     places.sort_by(f64::total_cmp);

@@ -8,6 +8,7 @@ use super::level::Level;
 use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
 use super::varying::Varying;
 use crate::conformal::Reference;
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
 use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
@@ -20,7 +21,7 @@ const CONTRACTIONS: usize = 24;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slice {
     /// Lower and upper end \[mm\].
-    pub eta: [f64; 2],
+    pub eta: Interval,
 }
 
 /// Finds the slices of a placed pair at one approach.
@@ -35,7 +36,7 @@ pub struct Slice {
 /// # let pair = Pair::new(rail, wheel, 460.0)?;
 /// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
 /// let slice = Slicer::new(&placement, 0.05).slice(0.0).expect("inside the patch");
-/// assert!((slice.eta[1] - f64::sqrt(460.0 * 460.0 - 459.95 * 459.95)).abs() < 1e-11);
+/// assert!((slice.eta.high - f64::sqrt(460.0 * 460.0 - 459.95 * 459.95)).abs() < 1e-11);
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 #[derive(Debug)]
@@ -89,7 +90,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
-    pub(super) fn reach(&self) -> Option<[f64; 2]> {
+    pub(super) fn reach(&self) -> Option<Interval> {
         match self.level().and_then(Level::normal_gap) {
             Some(gap) => gap.rail().reach(),
             None if self.placement.skew() == 0.0 => self.placement.overlap(),
@@ -99,16 +100,16 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
-    pub(super) fn joints(&self, [a, b]: [f64; 2]) -> Vec<f64> {
+    pub(super) fn joints(&self, over: Interval) -> Vec<f64> {
         if self.placement.lofted_rail().is_some() {
             // Its cells' sides are no lines of constant ξ.
             return Vec::new();
         }
         let joints = match self.level().and_then(Level::normal_gap) {
             Some(gap) => gap.rail().joints(),
-            None => self.placement.rail().section.joints([a, b]).map(|(xi, _)| xi).collect(),
+            None => self.placement.rail().section.joints(over).map(|(xi, _)| xi).collect(),
         };
-        joints.into_iter().filter(|xi| a < *xi && *xi < b).collect()
+        joints.into_iter().filter(|xi| over.low < *xi && *xi < over.high).collect()
     }
 
     /// Returns whether ξ is the arc length of the rail's surface.
@@ -154,7 +155,7 @@ impl<'a> Slicer<'a> {
             Some(skewed) => Some(skewed.lowest_valley(xi)?),
             None => None,
         };
-        self.edges(xi, valley).map(|[low, high]| Slice { eta: [low.eta, high.eta] })
+        self.edges(xi, valley).map(|[low, high]| Slice { eta: Interval::new(low.eta, high.eta) })
     }
 
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`.
@@ -181,7 +182,7 @@ impl<'a> Slicer<'a> {
     /// Returns whether s over the tangent plane of a rail rises from one lowest place of every ξ to both sides.
     pub(super) fn has_one_valley(&self, xi: &Lanes) -> bool {
         let one = |skewed: &Skewed<'_>| {
-            skewed.valleys.is_one_between([xi[0].min(xi[MANY - 1]), xi[0].max(xi[MANY - 1])])
+            skewed.valleys.is_one_between(Interval::between(xi[0], xi[MANY - 1]))
         };
         self.varying.is_none() && self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
     }
@@ -202,18 +203,18 @@ impl<'a> Slicer<'a> {
     fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Edge> {
         self.wheel.spans(xi, u_max, &mut self.spans);
         let half = |foot: SagittaPoint, ledge: bool| Edge { eta: foot.u.max(0.0).sqrt(), ledge };
-        let floor = self.spans.first().filter(|span| span.e[0] == 0.0)?.height;
+        let floor = self.spans.first().filter(|span| span.e.low == 0.0)?.height;
         for span in &self.spans {
             let rise = depth - (span.height - floor);
-            let end = span.e[1].is_finite().then(|| self.wheel.point(xi, span, span.e[1]));
+            let end = span.e.high.is_finite().then(|| self.wheel.point(xi, span, span.e.high));
             if end.is_none_or(|end| end.rise >= rise) {
                 let step = rise < -STEP_ROUNDINGS * f64::EPSILON * (span.height.abs() + floor.abs());
                 let foot = self.wheel.point_with_rise(xi, span, rise.max(0.0), CONTRACTIONS);
                 return Some(half(foot, step));
             }
         }
-        let last = self.spans.last().filter(|span| span.u[1] < u_max)?;
-        Some(half(self.wheel.point(xi, last, last.e[1]), true))
+        let last = self.spans.last().filter(|span| span.u.high < u_max)?;
+        Some(half(self.wheel.point(xi, last, last.e.high), true))
     }
 
     /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its

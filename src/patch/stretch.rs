@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, values, values_and_slopes};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, lanes, largest};
 use crate::numerics::noise::measured;
 
@@ -41,7 +42,7 @@ const EDGE_ROUNDINGS: f64 = 8.0;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Stretch {
     /// Range of ξ \[mm\].
-    pub(crate) xi: [f64; 2],
+    pub(crate) xi: Interval,
     curve: Curve,
 }
 
@@ -68,7 +69,7 @@ pub(super) struct Fit<F> {
     /// Gives both edges \[mm\] at 16 values of ξ.
     pub(super) edges: F,
     /// Range of ξ of the band \[mm\].
-    pub(super) band: [f64; 2],
+    pub(super) band: Interval,
     /// Whether the width is zero at either end of the band.
     pub(super) zero: [bool; 2],
     /// Whether the edges may be square roots of the distance from either end of the band.
@@ -82,24 +83,25 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
     ///
     /// Method: the interpolant at 16 Chebyshev points of ξ; if its last coefficients are no rounding, of the square root of the
     /// distance from an end of the band; otherwise the range is halved.
-    pub(super) fn add(&mut self, corners: [f64; 2], stretches: &mut Vec<Stretch>) {
-        let shortest = SHORTEST * (corners[1] - corners[0]);
+    pub(super) fn add(&mut self, corners: Interval, stretches: &mut Vec<Stretch>) {
+        let shortest = SHORTEST * corners.width();
         let first = stretches.len();
         let mut waiting = vec![(corners, self.noise)];
-        while let Some((xi @ [a, b], noise)) = waiting.pop() {
+        while let Some((xi, noise)) = waiting.pop() {
             let (plain, resolved) = self.over_width(xi, noise);
             let root = (0..2).find(|&end| !resolved && self.root[end] && xi[end] == self.band[end]);
             let rooted = root.map(|end| self.over_root(xi, end, noise)).filter(|(_, resolved)| *resolved);
             let count = stretches.len() + waiting.len() - first;
-            let middle = a + (b - a) / 2.0;
+            let middle = xi.middle();
+            let short = xi.width() <= shortest || middle <= xi.low || middle >= xi.high;
             if let Some((stretch, _)) = rooted {
                 stretches.push(stretch);
-            } else if resolved || b - a <= shortest || count > MOST_STRETCHES || middle <= a || middle >= b {
+            } else if resolved || short || count > MOST_STRETCHES {
                 stretches.push(plain);
             } else {
                 let noise =
                     if count > NOISY { noise.max(measured(|at| self.squares(at), xi)) } else { noise };
-                waiting.extend([[middle, b], [a, middle]].map(|half| (half, noise)));
+                waiting.extend(xi.halves().map(|half| (half, noise)).into_iter().rev());
             }
         }
     }
@@ -110,10 +112,9 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
         lanes(|k| ((high[k] - low[k]) / 2.0).powi(2))
     }
 
-    fn over_width(&mut self, xi: [f64; 2], noise: f64) -> (Stretch, bool) {
-        let [a, b] = xi;
+    fn over_width(&mut self, xi: Interval, noise: f64) -> (Stretch, bool) {
         let zero = [0, 1].map(|end| self.zero[end] && xi[end] == self.band[end]);
-        let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        let (centre, half) = (xi.middle(), xi.width() / 2.0);
         let nodes = &*NODES;
         let x: Lanes = lanes(|k| centre + half * nodes[k]);
         let [low, high] = (self.edges)(&x);
@@ -132,11 +133,11 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
         (Stretch { xi, curve }, resolved)
     }
 
-    fn over_root(&mut self, xi: [f64; 2], from: usize, noise: f64) -> (Stretch, bool) {
-        let length = xi[1] - xi[0];
+    fn over_root(&mut self, xi: Interval, from: usize, noise: f64) -> (Stretch, bool) {
+        let length = xi.width();
         let nodes = &*NODES;
         let away = |k: usize| length * ((1.0 + nodes[k]) / 2.0).powi(2);
-        let [low, high] = (self.edges)(&lanes(|k| if from == 0 { xi[0] + away(k) } else { xi[1] - away(k) }));
+        let [low, high] = (self.edges)(&lanes(|k| if from == 0 { xi.low + away(k) } else { xi.high - away(k) }));
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
         let rounding = rounding(largest(&low).max(largest(&high)), narrowest, noise);
         let [(low, first), (high, second)] = [low, high].map(|values| Series::new(&values, rounding));
@@ -167,7 +168,7 @@ impl Stretch {
     /// Returns both edges \[mm\] at N values of ξ within the range, and dη/dξ of both, which is infinite where the width is zero.
     #[inline(always)]
     pub(crate) fn edges_and_slopes<const N: usize>(&self, xi: &Lanes<N>) -> [[Lanes<N>; 2]; 2] {
-        let length = self.xi[1] - self.xi[0];
+        let length = self.xi.width();
         match &self.curve {
             Curve::Width { zero, square, middle } => {
                 let t: Lanes<N> = lanes(|k| self.parameter(xi[k]));
@@ -197,7 +198,7 @@ impl Stretch {
 
     #[inline(always)]
     fn parameter(&self, xi: f64) -> f64 {
-        let [a, b] = self.xi;
+        let [a, b] = self.xi.ends();
         (((xi - a) - (b - xi)) / (b - a)).clamp(-1.0, 1.0)
     }
 
@@ -216,7 +217,7 @@ fn rounding(size: f64, narrowest: f64, noise: f64) -> f64 {
 
 /// Returns the product of the distances from the ends with a zero width, and its derivative.
 #[inline(always)]
-fn distances([a, b]: [f64; 2], zero: [bool; 2], xi: f64) -> [f64; 2] {
+fn distances(Interval { low: a, high: b }: Interval, zero: [bool; 2], xi: f64) -> [f64; 2] {
     match zero {
         [false, false] => [1.0, 0.0],
         [true, false] => [xi - a, 1.0],
@@ -263,7 +264,7 @@ mod tests {
 
     fn fitted(
         mut edges: impl FnMut(f64) -> [f64; 2],
-        band: [f64; 2],
+        band: Interval,
         zero: [bool; 2],
         root: [bool; 2],
     ) -> Vec<Stretch> {
@@ -279,7 +280,7 @@ mod tests {
     #[test]
     fn an_ellipse_is_one_stretch() {
         let half = |x: f64| ((x + 1.0) * (2.0 - x)).sqrt();
-        let found = fitted(|x| [0.1 * x - half(x), 0.1 * x + half(x)], [-1.0, 2.0], [true; 2], [false; 2]);
+        let found = fitted(|x| [0.1 * x - half(x), 0.1 * x + half(x)], Interval::new(-1.0, 2.0), [true; 2], [false; 2]);
         let [stretch] = found.as_slice() else { panic!("{}", found.len()) };
         for x in [-1.0, -0.999_999, 0.3, 2.0] {
             let [[[low], [high]], slopes] = stretch.edges_and_slopes(&[x]);
@@ -298,7 +299,7 @@ mod tests {
         for from in 0..2 {
             let away = move |x: f64| if from == 0 { x } else { 1.0 - x };
             let edges = move |x: f64| [-1.0 - x, -0.2 * away(x).sqrt() + 0.3 * x];
-            let found = fitted(edges, [0.0, 1.0], [false; 2], [from == 0, from == 1]);
+            let found = fitted(edges, Interval::new(0.0, 1.0), [false; 2], [from == 0, from == 1]);
             assert_eq!(found.len(), 1);
             for x in [0.0, 1e-9, 0.2, 1.0] {
                 let [[[low], [high]], _] = found[0].edges_and_slopes(&[x]);
@@ -309,11 +310,11 @@ mod tests {
 
     #[test]
     fn a_kink_is_cut_out() {
-        let found = fitted(|x: f64| [-1.0, 1.0 + (x - 0.3).abs()], [0.0, 1.0], [false; 2], [false; 2]);
+        let found = fitted(|x: f64| [-1.0, 1.0 + (x - 0.3).abs()], Interval::new(0.0, 1.0), [false; 2], [false; 2]);
         let area: f64 = (0..10_000)
             .map(|k| (f64::from(k) + 0.5) / 10_000.0)
             .map(|x| {
-                let at = found.partition_point(|stretch| stretch.xi[1] < x);
+                let at = found.partition_point(|stretch| stretch.xi.high < x);
                 let [[low], [high]] = found[at].edges(&[x]);
                 (high - low) / 10_000.0
             })

@@ -16,7 +16,7 @@ pub fn turning_points(placement: &Placement, a: f64, b: f64) -> Vec<f64> {
         let bodies = [placement.rail(), placement.wheel()].map(|body| body.section.branch_and_slopes(middle));
         if let [Some((rail, slope_r)), Some((wheel, slope_w))] = bodies {
             // Bounds over whole pieces are found once for a placement, and settle most stretches.
-            if slope_w[0] <= slope_r[1] && slope_r[0] <= slope_w[1] {
+            if slope_w.meets(slope_r) {
                 all.extend(stationary_points(rail, wheel, pair[0], pair[1]));
             }
         }

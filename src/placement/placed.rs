@@ -8,6 +8,7 @@ use super::along::wheel_along;
 use super::swept::{Generator, Swept};
 use crate::error::{Error, Result, finite};
 use crate::lofted::{FramedLoft, LoftedBody};
+use crate::numerics::interval::Interval;
 use crate::profile::{Profile, ProfilePoint, Section, Side};
 
 /// One body of a placed pair.
@@ -426,15 +427,14 @@ impl Placement {
     }
 
     /// The ξ where both bodies have a surface in the midplane, outermost ends.
-    pub fn overlap(&self) -> Option<[f64; 2]> {
-        let (rail, wheel) = (self.rail.section.reach()?, self.wheel.section.reach()?);
-        let both = [rail[0].max(wheel[0]), rail[1].min(wheel[1])];
-        (both[0] < both[1]).then_some(both)
+    pub fn overlap(&self) -> Option<Interval> {
+        let both = self.rail.section.reach()?.cut(self.wheel.section.reach()?);
+        (both.width() > 0.0).then_some(both)
     }
 
     /// All ξ inside (a, b) where either body changes its branch, ascending.
     pub fn joints(&self, a: f64, b: f64) -> Vec<f64> {
-        let ends = |section: &Section| section.pieces.iter().flat_map(|p| p.xi).collect::<Vec<_>>();
+        let ends = |section: &Section| section.pieces.iter().flat_map(|p| p.xi.ends()).collect::<Vec<_>>();
         let mut all = ends(&self.rail.section);
         all.extend(ends(&self.wheel.section));
         all.retain(|&xi| xi > a && xi < b);

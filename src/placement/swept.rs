@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::error::{Error, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::profile::{Profile, ProfilePoint, Section, Side};
 
 /// How a body is swept from its profile.
@@ -82,9 +83,9 @@ impl Swept {
     }
 
     pub fn off(&self, x: f64) -> Error {
-        let reach = self.own_axes.reach().unwrap_or([f64::NAN; 2]);
+        let reach = self.own_axes.reach().unwrap_or(Interval::of(f64::NAN));
         let name = &self.profile.name;
-        let expected = format!("a point of {name}, which lies over [{}, {}]", reach[0], reach[1]);
+        let expected = format!("a point of {name}, which lies over [{}, {}]", reach.low, reach.high);
         Error::new("", x.to_string(), expected, "choose a point on the profile")
     }
 }

@@ -7,6 +7,7 @@
 //! `docs::conventions`.
 
 use crate::error::{Error, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove, parallel_to, trace};
 
@@ -182,9 +183,10 @@ impl RunningHead {
     }
 
     /// Branches with the intervals on which they are the head's surface, in order of x.
-    fn stretches(&self) -> impl Iterator<Item = (&Branch, [f64; 2])> {
-        let inside = self.section.pieces.iter().filter(|piece| piece.xi[1] > self.from);
-        inside.map(|piece| (&self.section.branches[piece.branch], [piece.xi[0].max(self.from), piece.xi[1]]))
+    fn stretches(&self) -> impl Iterator<Item = (&Branch, Interval)> {
+        let seen = Interval { low: self.from, ..Interval::ALL };
+        let inside = self.section.pieces.iter().filter(move |piece| piece.xi.high > seen.low);
+        inside.map(move |piece| (&self.section.branches[piece.branch], piece.xi.cut(seen)))
     }
 
     /// Greatest height.
@@ -198,15 +200,15 @@ impl RunningHead {
     }
 }
 
-/// Returns the ends of \[a, b\] and the places between them where a branch is level, ascending: it is monotone from each to the
+/// Returns the ends of an interval and the places between them where a branch is level, ascending: it is monotone from each to the
 /// next.
-fn turns(branch: &Branch, [a, b]: [f64; 2]) -> Vec<f64> {
-    let level = parallel_to(branch, [1.0, 0.0], [a, b]);
-    [a].into_iter().chain(level).chain([b]).collect()
+fn turns(branch: &Branch, xi: Interval) -> Vec<f64> {
+    let level = parallel_to(branch, [1.0, 0.0], xi);
+    [xi.low].into_iter().chain(level).chain([xi.high]).collect()
 }
 
 /// Greatest height of a branch over an interval.
-fn summit(branch: &Branch, xi: [f64; 2]) -> f64 {
+fn summit(branch: &Branch, xi: Interval) -> f64 {
     turns(branch, xi).into_iter().map(|x| branch.height(x)).fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -238,7 +240,7 @@ fn gauge_face(rail: &Profile, head: &RunningHead, top: f64, height: f64) -> Resu
 }
 
 /// Least abscissa of an interval where a branch is at least `level` high.
-fn first_at_level(branch: &Branch, xi: [f64; 2], level: f64) -> Option<f64> {
+fn first_at_level(branch: &Branch, xi: Interval, level: f64) -> Option<f64> {
     let turns = turns(branch, xi);
     let above = |x: f64| branch.height(x) - level;
     let first = turns.iter().position(|&x| above(x) >= 0.0)?;

@@ -24,6 +24,7 @@ use super::polynomial::Polynomial;
 use super::segment::{Segment, Shape};
 use super::station::Station;
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 
 /// Distance of two ends, as a share of the profile's extent, below which only rounding separates them. Coordinates of arcs
 /// are rounded some ten times. With a smaller value, bends over 1e-13 mm would make segments without length.
@@ -177,7 +178,7 @@ impl<'a> JointSide<'a> {
                 let near = self.parameter(polynomial, from);
                 let far = near + length / polynomial.speed(self.parameter(polynomial, 0.0));
                 let mut all = polynomial.curved(near, self.parameter(polynomial, 0.0), bent.change);
-                all.t = if self.outward > 0.0 { [near, far] } else { [far, near] };
+                all.t = if self.outward > 0.0 { Interval::new(near, far) } else { Interval::new(far, near) };
                 Shape::Polynomial(all)
             }
         };

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::station::Station;
 use crate::error::{Error, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
 use crate::numerics::twice::Twice;
 
@@ -15,14 +16,14 @@ use crate::numerics::twice::Twice;
 /// use wheelrail::Polynomial;
 ///
 /// let parabola = Polynomial::graph(&[1.0, 0.0, 0.5], [-1.0, 2.0])?; // z = 1 + x²/2
-/// let [_, end] = parabola.range().map(|t| parabola.station(t));
+/// let [_, end] = parabola.range().ends().map(|t| parabola.station(t));
 /// assert_eq!((end.x, end.z), (2.0, 3.0));
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     /// Range of the parameter, ascending \[mm or the spline's unit\].
-    pub(crate) t: [f64; 2],
+    pub(crate) t: Interval,
     /// Coefficients of x(t) \[mm\].
     pub(crate) x: Vec<Twice>,
     /// Coefficients of z(t) \[mm\].
@@ -46,7 +47,7 @@ impl Polynomial {
         let middle = x[0] + (x[1] - x[0]) / 2.0;
         let exact: Vec<Twice> = c.iter().map(|&c| c.into()).collect();
         Ok(Self {
-            t: x.map(|x| x - middle),
+            t: Interval::from(x).map(|x| x - middle),
             x: vec![middle.into(), 1.0.into()],
             z: recentred(&exact, middle.into()),
         })
@@ -64,12 +65,12 @@ impl Polynomial {
             return Err(Error::new("spline span", "too few coefficients", "x, z and t0 < t1", "refit"));
         }
         let exact = |c: &[f64]| c.iter().map(|&c| c.into()).collect();
-        Ok(Self { t, x: exact(x), z: exact(z) })
+        Ok(Self { t: t.into(), x: exact(x), z: exact(z) })
     }
 
     /// Tells whether the curve has a range and enough coefficients.
     pub(super) fn is_sound(&self) -> bool {
-        self.t[0] < self.t[1] && self.x.len() >= 2 && !self.z.is_empty()
+        self.t.width() > 0.0 && self.x.len() >= 2 && !self.z.is_empty()
     }
 
     /// Returns the coefficients of x(t) and of z(t) \[mm\]. Each coefficient is a sum of two numbers: the rounded value and
@@ -84,7 +85,7 @@ impl Polynomial {
     }
 
     /// Returns the range of the parameter, ascending \[mm or the spline's unit\].
-    pub fn range(&self) -> [f64; 2] {
+    pub fn range(&self) -> Interval {
         self.t
     }
 
@@ -112,10 +113,9 @@ impl Polynomial {
 
     /// Returns the coefficients of x and z \[mm\] in powers of the share of a part, which goes over these shares of the range.
     pub(crate) fn over(&self, [first, last]: [f64; 2]) -> [Vec<f64>; 2] {
-        let [from, to] = self.t;
-        let unit = (last - first) * (to - from);
+        let unit = (last - first) * self.t.width();
         [&self.x, &self.z].map(|c| {
-            let about = recentred(c, Twice::from(from + first * (to - from)));
+            let about = recentred(c, Twice::from(self.t.low + first * self.t.width()));
             about.into_iter().zip(0..).map(|(c, power)| f64::from(c) * unit.powi(power)).collect()
         })
     }
@@ -151,7 +151,7 @@ impl Polynomial {
         let flip = |c: &[Twice], sign: f64| {
             c.iter().enumerate().map(|(k, &c)| c * if k % 2 == 1 { -sign } else { sign }).collect()
         };
-        Self { t: [-self.t[1], -self.t[0]], x: flip(&self.x, -1.0), z: flip(&self.z, 1.0) }
+        Self { t: -self.t, x: flip(&self.x, -1.0), z: flip(&self.z, 1.0) }
     }
 
     pub(super) fn upside_down(&self) -> Self {

@@ -60,7 +60,7 @@ impl Segment {
     pub fn end_curvatures(&self) -> [f64; 2] {
         match &self.shape {
             Shape::Arc(arc) => [arc.curvature(); 2],
-            Shape::Polynomial(polynomial) => polynomial.t.map(|t| polynomial.curvature(t)),
+            Shape::Polynomial(polynomial) => polynomial.t.ends().map(|t| polynomial.curvature(t)),
         }
     }
 

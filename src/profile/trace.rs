@@ -135,8 +135,7 @@ fn curvature(segment: &Segment, share: f64) -> f64 {
 
 /// Returns the parameter at a share of its range.
 fn parameter(polynomial: &Polynomial, share: f64) -> f64 {
-    let [t0, t1] = polynomial.t;
-    t0 + share * (t1 - t0)
+    polynomial.t.low + share * polynomial.t.width()
 }
 
 /// Returns the length of a segment \[mm\]. A polynomial is measured by chords, which are at most a few per cent too short.

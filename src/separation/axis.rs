@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::values::{LINE, Values};
+use crate::numerics::interval::Interval;
 
 /// η and u = η² of every column, and whether one half of the values is the mirror image of the other.
 #[derive(Debug, Clone)]
@@ -43,10 +44,10 @@ impl EtaAxis {
 
     /// Returns two ranges of indices whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: the first for η ≥ 0, the second
     /// for η < 0. On a symmetric axis the second range is empty, because the values are mirrored.
-    pub(crate) fn ranges(&self, u: [f64; 2]) -> [Range<usize>; 2] {
+    pub(crate) fn ranges(&self, u: Interval) -> [Range<usize>; 2] {
         let right = &self.u[self.first_positive..];
-        let ends = u.map(|end| right.partition_point(|&u| u <= end));
-        let begin = if u[0] == 0.0 { 0 } else { ends[0] };
+        let ends = u.ends().map(|end| right.partition_point(|&u| u <= end));
+        let begin = if u.low == 0.0 { 0 } else { ends[0] };
         let positive = self.first_positive + begin..self.first_positive + ends[1];
         [positive, if self.symmetric { 0..0 } else { self.negative(u) }]
     }
@@ -83,7 +84,7 @@ impl EtaAxis {
     }
 
     /// Returns the second range of [`Self::ranges`].
-    fn negative(&self, [u0, u1]: [f64; 2]) -> Range<usize> {
+    fn negative(&self, Interval { low: u0, high: u1 }: Interval) -> Range<usize> {
         let left = &self.u[..self.first_positive];
         let end = if u0 == 0.0 { left.len() } else { left.partition_point(|&u| u > u0) };
         left.partition_point(|&u| u > u1)..end

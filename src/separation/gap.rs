@@ -92,8 +92,7 @@ fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
 /// Computes ζ^W(ξ + `shift`) − ζ^R(ξ) \[mm\] for a skewed wheel over both contact segments. It is the gap at ξ plus the
 /// wheel's rise from there; neither cancels.
 pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
-    let inside = |x: f64| x >= wheel.xi[0] && x <= wheel.xi[1];
-    if !inside(xi) {
+    if !wheel.xi.contains(xi) {
         return wheel.height(xi + shift) - rail.height(xi);
     }
     contact_gap(rail, wheel, xi, wheel.height(xi)) + shift * wheel.chord_slope(xi, xi + shift)

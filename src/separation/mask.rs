@@ -5,6 +5,7 @@ use super::evaluator::Evaluator;
 use super::kernel::Kernel;
 use super::relief::Relief;
 use super::wheel_surface::sagitta;
+use crate::numerics::interval::Interval;
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -27,10 +28,10 @@ fn covers(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> bool {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return true };
     let (Some(&low), Some(&high)) = (axis.eta.first(), axis.eta.last()) else { return true };
     let wheel = &relief.wheel;
-    let (mut from, mut to, mut u) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
+    let (mut over, mut u) = (Interval::NONE, 0f64);
     for [xi, eta] in [[first, low], [first, high], [last, low], [last, high]] {
         let [shift, eta_w] = relief.wheel_coordinates(xi, eta);
-        (from, to, u) = (from.min(xi + shift), to.max(xi + shift), u.max(eta_w * eta_w));
+        (over, u) = (over.with(xi + shift), u.max(eta_w * eta_w));
     }
     let ends =
         wheel.section.pieces.iter().flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.heights[end])));
@@ -39,16 +40,16 @@ fn covers(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> bool {
     // e = ρ − √(ρ² − u); it is NaN where the circle does not reach that far.
     let farthest = sagitta((radius * radius - u).sqrt(), u);
     let along = farthest * wheel.sin;
-    is_whole(relief.below, [first, last])
-        && is_whole(wheel.section, [from - along.max(0.0), to - along.min(0.0)])
+    is_whole(relief.below, Interval::new(first, last))
+        && is_whole(wheel.section, Interval::new(over.low - along.max(0.0), over.high - along.min(0.0)))
         && farthest.is_finite()
 }
 
 /// Returns whether a section has a surface without steps over an interval.
-fn is_whole(section: &Section, [from, to]: [f64; 2]) -> bool {
+fn is_whole(section: &Section, xi: Interval) -> bool {
     let pieces = &section.pieces;
-    let stepped = |&step: &usize| pieces[step - 1].xi[1] <= to && from <= pieces[step].xi[0];
-    section.reach().is_some_and(|[low, high]| low <= from && to <= high) && !section.steps.iter().any(stepped)
+    let stepped = |&step: &usize| pieces[step - 1].xi.high <= xi.high && xi.low <= pieces[step].xi.low;
+    section.reach().is_some_and(|reach| reach.holds(xi)) && !section.steps.iter().any(stepped)
 }
 
 /// A method over a grid that is not [`covered`]. Every column is compared with single points, which have a number exactly

@@ -239,9 +239,9 @@ fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     let mut alone = Vec::new();
     let mut rest = xi;
     for strip in strips {
-        let (before, others) = rest.split_at(rest.partition_point(|&xi| xi <= strip.xi[0]));
+        let (before, others) = rest.split_at(rest.partition_point(|&xi| xi <= strip.xi.low));
         alone.extend_from_slice(before);
-        rest = &others[others.partition_point(|&xi| xi < strip.xi[1])..];
+        rest = &others[others.partition_point(|&xi| xi < strip.xi.high)..];
     }
     alone.extend_from_slice(rest);
     alone

@@ -154,7 +154,7 @@ impl<'a> Relief<'a> {
             self.wheel.spans(xi_w, u_max, &mut self.spans);
         }
         let Some(span) = self.spans.first() else { return [f64::NAN; 3] };
-        [span.u[0], self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
+        [span.u.low, self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
     }
 
     /// Computes ξ′ − ξ and η′ \[mm\] in the surface's own directions of the tangent plane. The difference does not cancel.
@@ -168,7 +168,7 @@ impl<'a> Relief<'a> {
     fn over_contact(&self, xi: f64, span: &Span) -> bool {
         let (rail, wheel) = (self.below, self.wheel.section);
         let contact = rail.piece_at(xi).is_some_and(|piece| rail.contact == Some(piece.branch));
-        contact && wheel.contact == Some(span.branch) && span.e[0] == 0.0
+        contact && wheel.contact == Some(span.branch) && span.e.low == 0.0
     }
 
     /// Returns the size \[mm\] of the coordinates from which heights are computed. `height` is the surface's.

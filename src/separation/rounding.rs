@@ -3,6 +3,7 @@
 use super::axis::EtaAxis;
 use super::relief::Relief;
 use super::wheel_surface::sagitta;
+use crate::numerics::interval::Interval;
 use crate::profile::{Branch, BranchShape, Piece, Section};
 
 /// Number of roundings of the terms of s (gap, rise, and their interpolation over ξ): without yaw, and under yaw, where s
@@ -63,24 +64,22 @@ impl Reached {
         let mut reached = Self { contact: true, coordinates: 0.0 };
         let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return reached };
         let ends = |xi| eta.iter().map(move |&eta| (xi, eta)).map(|(xi, eta)| abscissa(xi, eta));
-        let from = ends(first).chain(ends(last)).fold(f64::INFINITY, f64::min);
-        let to = ends(first).chain(ends(last)).fold(f64::NEG_INFINITY, f64::max);
-        let curves = reached_pieces(section, [from, to]).all(|piece| is_curve(section, piece));
-        let reach = from.abs().max(to.abs());
+        let over = Interval::around(ends(first).chain(ends(last)));
+        let curves = reached_pieces(section, over).all(|piece| is_curve(section, piece));
+        let reach = over.magnitude();
         // Polynomials are turned into the frame in twice the working precision.
         let width = if curves { reach } else { reach + section.frame.x.abs() };
         let (mut height, mut climb) = (0f64, 0f64);
-        for piece in reached_pieces(section, [from, to]) {
+        for piece in reached_pieces(section, over) {
             reached.contact &= section.contact == Some(piece.branch);
             let branch = &section.branches[piece.branch];
             for end in [0, 1] {
                 let (point, zeta) = section.end(piece, end);
-                let outside = if end == 0 { piece.xi[0] < from } else { piece.xi[1] > to };
-                let (at, zeta) = if outside {
-                    let at = if end == 0 { from } else { to };
-                    (branch.chord_slope(at, at), branch.height(at))
-                } else {
+                let (at, zeta) = if over.contains(piece.xi[end]) {
                     (branch.slope_from(&point), zeta)
+                } else {
+                    let at = over[end];
+                    (branch.chord_slope(at, at), branch.height(at))
                 };
                 height = height.max(zeta.abs());
                 let slope = if at.abs() <= STEEP {
@@ -103,8 +102,8 @@ impl Reached {
 }
 
 /// Returns the pieces that touch an interval.
-fn reached_pieces(section: &Section, [from, to]: [f64; 2]) -> impl Iterator<Item = &Piece> {
-    section.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to)
+fn reached_pieces(section: &Section, xi: Interval) -> impl Iterator<Item = &Piece> {
+    section.pieces_from(xi.low).iter().take_while(move |piece| piece.xi.low <= xi.high)
 }
 
 fn is_curve(section: &Section, piece: &Piece) -> bool {
@@ -123,10 +122,10 @@ fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
 /// Finds the abscissa inside a piece that is nearest to one end of the piece. The abscissae of the columns ascend.
 fn nearest(piece: &Piece, end: usize, xi: &[f64], abscissa: impl Fn(f64) -> f64) -> Option<f64> {
     let index = if end == 0 {
-        xi.partition_point(|&xi| abscissa(xi) < piece.xi[0])
+        xi.partition_point(|&xi| abscissa(xi) < piece.xi.low)
     } else {
-        xi.partition_point(|&xi| abscissa(xi) <= piece.xi[1]).checked_sub(1)?
+        xi.partition_point(|&xi| abscissa(xi) <= piece.xi.high).checked_sub(1)?
     };
     let x = abscissa(*xi.get(index)?);
-    (piece.xi[0] <= x && x <= piece.xi[1]).then_some(x)
+    (piece.xi.low <= x && x <= piece.xi.high).then_some(x)
 }

@@ -13,6 +13,7 @@
 
 use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
 
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, every, lanes};
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
@@ -48,9 +49,9 @@ pub struct Surface<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Range of e \[mm\]; the end may be infinite.
-    pub e: [f64; 2],
+    pub e: Interval,
     /// Range of u = η² \[mm²\]; the end may be infinite.
-    pub u: [f64; 2],
+    pub u: Interval,
     /// Index of the branch.
     pub branch: usize,
     /// Index of the piece of the envelope.
@@ -140,18 +141,18 @@ impl<'a> Surface<'a> {
             let [near, far] = self.sides().map(|side| piece.xi[side]);
             let begin = if self.sin == 0.0 { 0.0 } else { ((xi - near) / self.sin).max(0.0) };
             let end = if self.sin == 0.0 { f64::INFINITY } else { (xi - far) / self.sin };
-            if self.sin == 0.0 && !(piece.xi[0] <= xi && xi <= piece.xi[1]) {
+            if self.sin == 0.0 && !piece.xi.contains(xi) {
                 return;
             }
-            let mut span = self.span(xi, index, [begin, end], u_max);
+            let mut span = self.span(xi, index, Interval::new(begin, end), u_max);
             if let Some(last) = spans.last().filter(|last| !self.is_step(last.piece, index)) {
                 // Two ranges meet at one joint, in spite of rounding.
-                span.u[0] = last.u[1];
+                span.u.low = last.u.high;
             }
             // Near the axle's height u may fall along the column. Such a span is empty.
-            span.u[1] = span.u[1].max(span.u[0]);
-            let done = span.u[1] >= u_max || self.sin == 0.0;
-            if span.u[0] <= u_max {
+            span.u.high = span.u.high.max(span.u.low);
+            let done = span.u.high >= u_max || self.sin == 0.0;
+            if span.u.low <= u_max {
                 spans.push(span);
             }
             match self.next_piece(index) {
@@ -166,10 +167,10 @@ impl<'a> Surface<'a> {
     pub(super) fn first_piece(&self, xi: f64) -> Option<usize> {
         let pieces = &self.section.pieces;
         if self.sin > 0.0 {
-            let before = pieces.partition_point(|p| p.xi[0] < xi).checked_sub(1);
+            let before = pieces.partition_point(|p| p.xi.low < xi).checked_sub(1);
             return before.or((self.at_end(xi) == Some(0)).then_some(0));
         }
-        let index = pieces.partition_point(|p| p.xi[1] <= xi);
+        let index = pieces.partition_point(|p| p.xi.high <= xi);
         Some(index).filter(|&i| i < pieces.len()).or(self.at_end(xi))
     }
 
@@ -191,7 +192,7 @@ impl<'a> Surface<'a> {
     fn at_end(&self, xi: f64) -> Option<usize> {
         let pieces = &self.section.pieces;
         let last = pieces.len().checked_sub(1)?;
-        if pieces[0].xi[0] == xi { Some(0) } else { (pieces[last].xi[1] == xi).then_some(last) }
+        if pieces[0].xi.low == xi { Some(0) } else { (pieces[last].xi.high == xi).then_some(last) }
     }
 
     /// Returns the ends of a piece by which a column enters and leaves it; 0 is the end at smaller ξ.
@@ -200,26 +201,26 @@ impl<'a> Surface<'a> {
     }
 
     /// Makes the span over one piece between two sagittae \[mm\].
-    fn span(&self, xi: f64, index: usize, e: [f64; 2], u_max: f64) -> Span {
+    fn span(&self, xi: f64, index: usize, e: Interval, u_max: f64) -> Span {
         let (piece, near) = (&self.section.pieces[index], self.sides()[0]);
         let branch = &self.section.branches[piece.branch];
-        let fold = if e[0] > 0.0 { self.fold(xi, branch, e) } else { None };
-        let e = [fold.unwrap_or(e[0]), e[1]];
+        let fold = if e.low > 0.0 { self.fold(xi, branch, e.low, e.high) } else { None };
+        let e = Interval { low: fold.unwrap_or(e.low), ..e };
         let (begin, on_profile) = match fold {
             Some(e) => branch.point(self.abscissa(xi, e)),
-            None if e[0] > 0.0 => self.section.end(piece, near),
+            None if e.low > 0.0 => self.section.end(piece, near),
             None => branch.point(xi),
         };
         let SpanLanes { height: [height], w: [w], u: [[u0], _], .. } =
-            self.span_from(&[xi], branch, [e[0]], (begin, [on_profile]));
-        let span = Span { e, u: [u0, f64::INFINITY], branch: piece.branch, piece: index, height, w, begin };
-        if e[1] > FAR_END * u_max / (2.0 * w) && w > 0.0 {
+            self.span_from(&[xi], branch, [e.low], (begin, [on_profile]));
+        let span = Span { e, u: Interval::new(u0, f64::INFINITY), branch: piece.branch, piece: index, height, w, begin };
+        if e.high > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
-        let [e1, u1] = self.leaves_or_folds(xi, piece, e[0]);
+        let [e1, u1] = self.leaves_or_folds(xi, piece, e.low);
         // If the column leaves the wheel before the profile ends, that end is never met.
         let e1 = if u1.is_finite() { e1 } else { f64::INFINITY };
-        Span { e: [e[0], e1], u: [u0, u1], ..span }
+        Span { e: Interval { high: e1, ..e }, u: Interval::new(u0, u1), ..span }
     }
 
     /// Makes the spans that begin at points of a branch with these heights \[mm\] and sagittae e_0 \[mm\]. Their ends are
@@ -246,8 +247,8 @@ impl<'a> Surface<'a> {
             points: span.begin,
             height: [span.height],
             w: [span.w],
-            e: [[span.e[0]], [span.e[1]]],
-            u: [[span.u[0]], [span.u[1]]],
+            e: span.e.ends().map(|e| [e]),
+            u: span.u.ends().map(|u| [u]),
         }
     }
 
@@ -265,7 +266,7 @@ impl<'a> Surface<'a> {
     pub(super) fn leaves_or_folds(&self, xi: f64, piece: &Piece, e0: f64) -> [f64; 2] {
         let [e1, u1] = self.leaves(xi, piece);
         let branch = &self.section.branches[piece.branch];
-        let fold = if u1.is_finite() { self.fold(xi, branch, [e1, e0]) } else { None };
+        let fold = if u1.is_finite() { self.fold(xi, branch, e1, e0) } else { None };
         let Some(e) = fold else { return [e1, u1] };
         let w = self.axle_distance(xi, branch.height(self.abscissa(xi, e)) + e * self.cos);
         [e, e * (2.0 * w + e)]
@@ -273,7 +274,7 @@ impl<'a> Surface<'a> {
 
     /// Returns the sagitta \[mm\] between `from`, which is next to a wall of the profile, and `to` at which a column over a branch
     /// folds: on the side of the wall u falls as the sagitta grows, and the surface faces away. Returns `None` if u grows at `from`.
-    fn fold(&self, xi: f64, branch: &Branch, [from, to]: [f64; 2]) -> Option<f64> {
+    fn fold(&self, xi: f64, branch: &Branch, from: f64, to: f64) -> Option<f64> {
         // du/de halved: w + e (1 + dw/de), where dw/de = −cosθ dζ/de.
         let growth = |e: f64| {
             let at = self.abscissa(xi, e);
@@ -411,7 +412,7 @@ impl<'a> Surface<'a> {
         let point = match self.points_at(&[xi], &self.lane(span), &[u]) {
             Some(points) => points.into(),
             None => {
-                self.point(xi, span, bracketed(|e| self.point(xi, span, e).u - u, span.e[0], self.end(span))?)
+                self.point(xi, span, bracketed(|e| self.point(xi, span, e).u - u, span.e.low, self.end(span))?)
             }
         };
         Some(point).filter(|point| point.w > 0.0)
@@ -419,7 +420,7 @@ impl<'a> Surface<'a> {
 
     /// Returns a sagitta \[mm\] beyond which a span has no point.
     fn end(&self, span: &Span) -> f64 {
-        if span.e[1].is_finite() { span.e[1] } else { self.axle }
+        if span.e.high.is_finite() { span.e.high } else { self.axle }
     }
 
     /// Finds the point that lies `rise` \[mm\] above the beginning of the span.
@@ -427,7 +428,7 @@ impl<'a> Surface<'a> {
     /// Method: at most `contractions` steps e ← e_0 + rise/(cosθ − sinθ × chord slope), which contract by e × curvature;
     /// then a bracketed root. Degenerate case: if there is no root, the result is that of the last step.
     pub fn point_with_rise(&self, xi: f64, span: &Span, rise: f64, contractions: usize) -> SagittaPoint {
-        let [begin, end] = span.e;
+        let [begin, end] = span.e.ends();
         let slope = self.branch(span).chord_from(&span.begin, self.abscissa(xi, begin));
         let mut point = self.point(xi, span, (begin + rise / (self.cos - self.sin * slope)).min(end));
         let mut last = f64::INFINITY;
@@ -458,7 +459,7 @@ impl<'a> Surface<'a> {
     /// Computes dζ/du \[1/mm\], the growth of ζ with η², at the beginning of a span. At η = 0 this is q(ξ, 0) = (cosθ − h′(ξ)
     /// sinθ)/2w. At a vertical end of the profile e stays while w falls.
     pub fn opening(&self, xi: f64, span: &Span) -> f64 {
-        let e = span.e[0];
+        let e = span.e.low;
         let rise = self.cos - self.sin * self.branch(span).chord_from(&span.begin, self.abscissa(xi, e));
         if rise.is_infinite() {
             return -1.0 / (2.0 * e * self.cos);
@@ -468,8 +469,8 @@ impl<'a> Surface<'a> {
 
     /// Finds the index of the span that holds u \[mm²\], among the spans of a column in order of e.
     pub fn span_at(spans: &[Span], u: f64) -> Option<usize> {
-        let k = spans.iter().position(|span| u <= span.u[1])?;
-        (u >= spans[k].u[0]).then_some(k)
+        let k = spans.iter().position(|span| u <= span.u.high)?;
+        (u >= spans[k].u.low).then_some(k)
     }
 
     /// Computes the outward unit normal (towards the rail) in (ξ, η, ζ) at a point with lateral offset η \[mm\].

@@ -3,6 +3,7 @@
 
 use nalgebra::{UnitComplex, Vector2};
 
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Branch, Section};
 
@@ -147,20 +148,19 @@ impl<'a> Turned<'a> {
 
     /// Returns whether bounds of angle and curvature leave it open that ξ of the places turns along a piece.
     pub(super) fn may_turn(&self, piece: usize) -> bool {
-        let (ends, slopes) = (self.section.pieces[piece].xi, self.section.slopes(piece));
-        let [_, seconds] =
-            self.section.branches[self.section.pieces[piece].branch].derivative_bounds(ends[0], ends[1]);
-        let steepest = slopes[0].abs().max(slopes[1].abs());
-        let far = slopes.map(|slope| self.parallel_to_tangent(slope).0.abs());
+        let (xi, slopes) = (self.section.pieces[piece].xi, self.section.slopes(piece));
+        let [_, seconds] = self.section.branches[self.section.pieces[piece].branch].derivative_bounds(xi);
+        let steepest = slopes.magnitude();
+        let far = slopes.ends().map(|slope| self.parallel_to_tangent(slope).0.abs());
         let t = far[0].max(far[1]);
         let (sin, cos) = (2.0 * t / (1.0 + t * t), (1.0 - t * t) / (1.0 + t * t));
         let [turned, tilted] = [self.skew.im.abs(), self.tilt.im.abs()];
-        let flattest = slopes.map(|slope| (self.tilt.re - self.tilt.im * slope) / 1f64.hypot(slope));
+        let flattest = slopes.ends().map(|slope| (self.tilt.re - self.tilt.im * slope) / 1f64.hypot(slope));
         let by_v = flattest[0].min(flattest[1]) * (self.skew.re * cos - turned * tilted * sin);
         // dψ/dp is ζ″/(1 + ζ′²).
-        let turn = (turned + self.skew.re * sin) * seconds[0].abs().max(seconds[1].abs()) / by_v;
-        let radii = ends.map(|p| self.circle(piece, p).radius);
-        let radius = radii[0].max(radii[1]) + steepest * (ends[1] - ends[0]);
+        let turn = (turned + self.skew.re * sin) * seconds.magnitude() / by_v;
+        let radii = xi.ends().map(|p| self.circle(piece, p).radius);
+        let radius = radii[0].max(radii[1]) + steepest * xi.width();
         let growth = tilted + steepest * self.tilt.re;
         let most = growth * (tilted * (1.0 - cos) + turned * sin) + radius * turn * (turned + tilted * sin);
         !(by_v > 0.0 && most < self.skew.re)
@@ -207,10 +207,9 @@ impl<'a> Turned<'a> {
     }
 
     /// Returns both t at which a circle crosses the ends of a range of η, widened a little.
-    pub(super) fn turns(&self, circle: &Circle, eta: [f64; 2]) -> [f64; 2] {
+    pub(super) fn turns(&self, circle: &Circle, eta: Interval) -> [f64; 2] {
         let most = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHEST);
-        let margin = MARGIN * (eta[1] - eta[0]);
-        [eta[0] - margin, eta[1] + margin].map(|eta| {
+        eta.grown(MARGIN * eta.width()).ends().map(|eta| {
             // The circle also moves along the profile as it turns. This is left out, and the margin covers it.
             let sin = (eta - circle.p * self.skew.im) / (self.skew.re * circle.radius);
             let sin = sin.clamp(-most, most);

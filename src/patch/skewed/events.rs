@@ -1,6 +1,7 @@
 //! Finds the ξ at which the intervals of a patch under a skewed wheel begin, end, divide or join.
 
 use super::monotone::monotone;
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::band::Turn;
 use crate::patch::outline::Outline;
@@ -20,7 +21,7 @@ pub(in crate::patch) struct Events {
 }
 
 /// Finds the events inside a range of ξ, which must not be empty.
-pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Events {
+pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: Interval) -> Events {
     let mut events = Events::default();
     let approach = outline.slicer.approach();
     let rail = &outline.slicer.placement().rail().section;
@@ -29,16 +30,16 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: [f64; 2]) -> Ev
     for crease in 0..count {
         let Some(skewed) = &mut outline.slicer.skewed else { break };
         let is_valley = skewed.valleys.creases[crease].is_valley;
-        for xi in skewed.valleys.creases[crease].xi {
+        for xi in skewed.valleys.creases[crease].xi.ends() {
             // Where s is above δ, nothing begins or ends.
             let above = skewed.depth(crease, xi) > 0.0;
-            events.xi.extend((!above && range[0] < xi && xi < range[1]).then_some(xi));
+            events.xi.extend((!above && range.low < xi && xi < range.high).then_some(xi));
         }
         intervals.clear();
-        let matters = |[low, high]: [f64; 2]| low < approach && (is_valley || high > approach);
+        let matters = |s: Interval| s.low < approach && (is_valley || s.high > approach);
         monotone(&skewed.valleys, rail, crease, range, matters, &mut intervals);
-        for &[from, to] in &intervals {
-            let ends = [from.next_up(), to];
+        for interval in &intervals {
+            let ends = [interval.low.next_up(), interval.high];
             let depths = ends.map(|xi| crease_depth(outline, crease, xi));
             passes(outline, crease, (ends, depths), &mut events);
             if is_valley {
@@ -64,11 +65,7 @@ fn passes(
     if inside == [false; 2] {
         return;
     }
-    let [low, high] = outline.window.eta;
-    let seen = ends.map(|xi| {
-        let eta = outline.slicer.valley(Some(crease), xi);
-        low <= eta && eta <= high
-    });
+    let seen = ends.map(|xi| outline.window.eta.contains(outline.slicer.valley(Some(crease), xi)));
     if seen == [true; 2] {
         if inside[0] == inside[1] {
             return;
@@ -84,27 +81,26 @@ fn passes(
             }
         }
     } else if inside.contains(&true) {
-        passes_beside_window(outline, crease, ends, events);
+        passes_beside_window(outline, crease, ends.into(), events);
     }
 }
 
 /// Adds the events of a valley or ridge that leaves the window: there s at its place, or at the window's edge next to it,
 /// passes δ.
-fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, [from, to]: [f64; 2], events: &mut Events) {
-    let mut places = vec![from];
-    for edge in outline.window.eta.into_iter().filter(|edge| edge.is_finite()) {
-        places.extend(outline.turns_along(edge, [from, to]));
+fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, over: Interval, events: &mut Events) {
+    let mut places = vec![over.low];
+    for edge in outline.window.eta.ends().into_iter().filter(|edge| edge.is_finite()) {
+        places.extend(outline.turns_along(edge, over));
     }
-    places.push(to);
+    places.push(over.high);
     places.sort_by(f64::total_cmp);
-    let mut before = outline.depth(Some(crease), from) < 0.0;
+    let mut before = outline.depth(Some(crease), over.low) < 0.0;
     for pair in places.windows(2) {
         let here = outline.depth(Some(crease), pair[1]) < 0.0;
         if here != before {
             let (on, off) = if before { (pair[0], pair[1]) } else { (pair[1], pair[0]) };
             let xi = last_where(|xi| outline.depth(Some(crease), xi) < 0.0, on, off);
-            let eta = outline.slicer.valley(Some(crease), xi);
-            let seen = outline.window.eta[0] <= eta && eta <= outline.window.eta[1];
+            let seen = outline.window.eta.contains(outline.slicer.valley(Some(crease), xi));
             (if seen { &mut events.tips } else { &mut events.cuts }).push(xi);
             events.xi.push(xi);
         }

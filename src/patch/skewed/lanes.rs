@@ -5,6 +5,8 @@
 //! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
+use super::slicer::Edge;
+use crate::numerics::interval::Interval;
 use crate::patch::band::{Band, Turn, overlap, steps};
 use crate::patch::outline::{End, Outline};
 
@@ -30,7 +32,7 @@ struct Lane {
     /// The valleys of its interval over the last stretch.
     group: ValleyGroup,
     /// The interval of η near the end of the last stretch \[mm\].
-    edge: [f64; 2],
+    edge: Interval,
 }
 
 /// A valley inside the patch at one ξ.
@@ -53,35 +55,32 @@ struct LaneWalk<'w, 'a> {
 
 /// Returns the bands, and the places at which s may be least.
 pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
-    let Some([a, b]) = searched(outline) else { return (Vec::new(), Vec::new()) };
-    let mut events = events(outline, [a, b]);
+    let Some(over) = searched(outline) else { return (Vec::new(), Vec::new()) };
+    let mut events = events(outline, over);
     let turns = std::mem::take(&mut events.turns);
     let placement = outline.slicer.placement();
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    let rail_steps: Vec<f64> = steps(&placement.rail().section, [a, b], extent).collect();
-    let mut all = [&events.xi[..], &rail_steps, &[a, b]].concat();
+    let rail_steps: Vec<f64> = steps(&placement.rail().section, over, extent).collect();
+    let mut all = [&events.xi[..], &rail_steps, &over.ends()].concat();
     all.sort_by(f64::total_cmp);
     all.dedup();
     let mut walk = LaneWalk { outline, events, lanes: Vec::new(), done: Vec::new() };
     let shortest = XI_ROUNDINGS * f64::EPSILON * placement.rolling_radius();
     for pair in all.windows(2).filter(|pair| pair[1] - pair[0] > shortest) {
         let groups = groups(walk.outline, pair[0] + (pair[1] - pair[0]) / 2.0);
-        walk.step([pair[0], pair[1]], groups, rail_steps.contains(&pair[0]));
+        walk.step(Interval::new(pair[0], pair[1]), groups, rail_steps.contains(&pair[0]));
     }
-    walk.step([b, b], Vec::new(), false);
+    walk.step(Interval::of(over.high), Vec::new(), false);
     (walk.done, turns)
 }
 
 /// Returns the range of ξ that the rail, the window and the valleys have in common; `None` if it is empty.
-fn searched(outline: &Outline<'_>) -> Option<[f64; 2]> {
+fn searched(outline: &Outline<'_>) -> Option<Interval> {
     let reach = outline.slicer.placement().rail().section.reach()?;
     let creases = &outline.slicer.skewed.as_ref()?.valleys.creases;
-    let valleys = || creases.iter().filter(|crease| crease.is_valley);
-    let first = valleys().map(|crease| crease.xi[0]).fold(f64::INFINITY, f64::min);
-    let last = valleys().map(|crease| crease.xi[1]).fold(f64::NEG_INFINITY, f64::max);
-    let [a, b] = outline.window.xi;
-    let ends = [a.max(reach[0]).max(first), b.min(reach[1]).min(last)];
-    (ends[0] < ends[1]).then_some(ends)
+    let valleys = creases.iter().filter(|crease| crease.is_valley);
+    let under = valleys.fold(Interval::NONE, |under, crease| under.hull(crease.xi));
+    Some(outline.window.xi.cut(reach).cut(under)).filter(|over| over.width() > 0.0)
 }
 
 /// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
@@ -118,11 +117,16 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
     groups.into_iter().map(deepest_first).collect()
 }
 
+/// Returns the interval of η between two edges \[mm\].
+fn between([low, high]: [Edge; 2]) -> Interval {
+    Interval::new(low.eta, high.eta)
+}
+
 impl LaneWalk<'_, '_> {
     /// Handles the event at the beginning of a stretch. Continues or opens a band for each group of the stretch.
-    fn step(&mut self, [from, to]: [f64; 2], groups: Vec<ValleyGroup>, rail_steps: bool) {
-        let inside = INSIDE * (to - from);
-        let begins: Vec<[f64; 2]> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
+    fn step(&mut self, over: Interval, groups: Vec<ValleyGroup>, rail_steps: bool) {
+        let (Interval { low: from, high: to }, inside) = (over, INSIDE * over.width());
+        let begins: Vec<Interval> = groups.iter().map(|group| self.interval(group, from + inside)).collect();
         let lanes = std::mem::take(&mut self.lanes);
         let links: Vec<[usize; 2]> = (0..lanes.len())
             .flat_map(|i| (0..groups.len()).map(move |j| [i, j]))
@@ -134,9 +138,9 @@ impl LaneWalk<'_, '_> {
         let partners = |side: usize, k: usize| -> Vec<usize> {
             links.iter().filter(|link| link[side] == k).map(|link| link[1 - side]).collect()
         };
-        let (mut kept, mut sides): (Vec<Option<Band>>, Vec<Option<[f64; 2]>>) =
+        let (mut kept, mut sides): (Vec<Option<Band>>, Vec<Option<Interval>>) =
             (vec![None; groups.len()], vec![None; groups.len()]);
-        let mut closing: Vec<(Lane, Option<[f64; 2]>)> = Vec::new();
+        let mut closing: Vec<(Lane, Option<Interval>)> = Vec::new();
         let forks = if rail_steps { Vec::new() } else { self.forks(from, &lanes, &groups, &begins, &links) };
         for (i, lane) in lanes.into_iter().enumerate() {
             match partners(0, i)[..] {
@@ -171,9 +175,9 @@ impl LaneWalk<'_, '_> {
     }
 
     /// Returns the interval of a group at ξ \[mm\]; NaN outside the patch.
-    fn interval(&mut self, group: &ValleyGroup, xi: f64) -> [f64; 2] {
+    fn interval(&mut self, group: &ValleyGroup, xi: f64) -> Interval {
         let edges = self.outline.edges(group.first().copied(), xi);
-        edges.map_or([f64::NAN; 2], |edges| edges.map(|edge| edge.eta))
+        edges.map_or(Interval::of(f64::NAN), between)
     }
 
     /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides or several join.
@@ -183,9 +187,9 @@ impl LaneWalk<'_, '_> {
         xi: f64,
         lanes: &[Lane],
         groups: &[ValleyGroup],
-        begins: &[[f64; 2]],
+        begins: &[Interval],
         links: &[[usize; 2]],
-    ) -> Vec<(usize, usize, [f64; 2])> {
+    ) -> Vec<(usize, usize, Interval)> {
         let mut sides = Vec::new();
         let counts = [lanes.len(), groups.len()];
         for whole in 0..2 {
@@ -197,19 +201,18 @@ impl LaneWalk<'_, '_> {
                     continue;
                 }
                 let interval = |part: usize| if whole == 0 { begins[part] } else { lanes[part].edge };
-                parts.sort_by(|&p, &q| interval(p)[0].total_cmp(&interval(q)[0]));
+                parts.sort_by(|&p, &q| interval(p).low.total_cmp(&interval(q).low));
                 let (first, last) = (parts[0], parts[parts.len() - 1]);
                 let group = |part: usize| if whole == 0 { &groups[part] } else { &lanes[part].group };
                 let (low, high) = (group(first).clone(), group(last).clone());
-                let mut cuts = vec![self.outer(&low, xi, 0).unwrap_or(interval(first)[0])];
+                let mut cuts = vec![self.outer(&low, xi, 0).unwrap_or(interval(first).low)];
                 for pair in parts.windows(2) {
-                    cuts.push(self.meeting_point(xi, [interval(pair[0])[1], interval(pair[1])[0]]));
+                    cuts.push(self.meeting_point(xi, [interval(pair[0]).high, interval(pair[1]).low]));
                 }
-                cuts.push(self.outer(&high, xi, 1).unwrap_or(interval(last)[1]));
-                sides.push((whole, k, [cuts[0], cuts[parts.len()]]));
-                sides.extend(
-                    parts.iter().zip(cuts.windows(2)).map(|(&p, cut)| (1 - whole, p, [cut[0], cut[1]])),
-                );
+                cuts.push(self.outer(&high, xi, 1).unwrap_or(interval(last).high));
+                sides.push((whole, k, Interval::new(cuts[0], cuts[parts.len()])));
+                let side = |cut: &[f64]| Interval::new(cut[0], cut[1]);
+                sides.extend(parts.iter().zip(cuts.windows(2)).map(|(&p, cut)| (1 - whole, p, side(cut))));
             }
         }
         sides
@@ -227,37 +230,37 @@ impl LaneWalk<'_, '_> {
         let valleys = &skewed.valleys;
         let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
         let places = ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi));
-        let between = places.filter(|&eta| from.min(to) <= eta && eta <= from.max(to));
+        let between = places.filter(|&eta| Interval::between(from, to).contains(eta));
         let nearest = between.min_by(|p, q| (p - middle).abs().total_cmp(&(q - middle).abs()));
         nearest.unwrap_or(middle)
     }
 
     /// Returns the finished band of a lane that ends at ξ.
-    fn closed(&mut self, lane: Lane, xi: f64, fork: Option<[f64; 2]>) -> Band {
+    fn closed(&mut self, lane: Lane, xi: f64, fork: Option<Interval>) -> Band {
         let Lane { mut band, group, edge } = lane;
         let (side, end) = self.end(&group, xi, xi, edge);
-        band.xi[1] = xi;
+        band.xi.high = xi;
         band.sides[1] = fork.unwrap_or(side);
         band.ends[1] = fork.is_none().then_some(end);
         band
     }
 
     /// Returns a new band that begins at ξ. Its slice is taken at `at`, which is ξ or the next number.
-    fn opened(&mut self, group: &ValleyGroup, xi: f64, fork: Option<[f64; 2]>, at: f64) -> Band {
-        let (side, end) = self.end(group, xi, at, [f64::NAN; 2]);
+    fn opened(&mut self, group: &ValleyGroup, xi: f64, fork: Option<Interval>, at: f64) -> Band {
+        let (side, end) = self.end(group, xi, at, Interval::of(f64::NAN));
         let ends = [fork.is_none().then_some(end), None];
-        Band::new([xi; 2], ends, [fork.unwrap_or(side); 2], self.outline.window.eta)
+        Band::new(Interval::of(xi), ends, [fork.unwrap_or(side); 2], self.outline.window.eta)
     }
 
     /// Returns the side of a band that begins or ends at ξ without a fork, and what bounds the band.
-    fn end(&mut self, group: &ValleyGroup, xi: f64, at: f64, inside: [f64; 2]) -> ([f64; 2], End) {
+    fn end(&mut self, group: &ValleyGroup, xi: f64, at: f64, inside: Interval) -> (Interval, End) {
         let valley = group.first().copied();
         let end = self.end_at(xi);
         let edges = self.outline.edges(valley, at).filter(|_| end != End::Tip);
         let [_, _, lowest] = self.outline.lowest(valley, at);
         let side = match edges {
-            Some(edges) => edges.map(|edge| edge.eta),
-            None if end == End::Tip || inside[0].is_nan() => [lowest; 2],
+            Some(edges) => between(edges),
+            None if end == End::Tip || inside.low.is_nan() => Interval::of(lowest),
             None => inside,
         };
         (side, end)
@@ -267,7 +270,7 @@ impl LaneWalk<'_, '_> {
     fn end_at(&self, xi: f64) -> End {
         if self.events.tips.contains(&xi) {
             End::Tip
-        } else if self.outline.window.xi.contains(&xi) || self.events.cuts.contains(&xi) {
+        } else if self.outline.window.xi.ends().contains(&xi) || self.events.cuts.contains(&xi) {
             End::Window
         } else {
             End::ProfileEnd

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::path::Leg;
 use super::valleys::Valleys;
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
 use crate::profile::{Branch, Section, Station};
@@ -18,7 +19,7 @@ struct RailStretch<'v> {
     leg: &'v Leg,
     rail: &'v Branch,
     /// Bounds of ds/dξ along the leg.
-    slopes: [f64; 2],
+    slopes: Interval,
     /// Whether the rail may stand upright.
     upright: bool,
 }
@@ -36,31 +37,31 @@ pub(crate) fn monotone(
     valleys: &Valleys<'_>,
     rail: &Section,
     crease: usize,
-    [from, to]: [f64; 2],
-    matters: impl Fn([f64; 2]) -> bool,
-    intervals: &mut Vec<[f64; 2]>,
+    xi: Interval,
+    matters: impl Fn(Interval) -> bool,
+    intervals: &mut Vec<Interval>,
 ) {
     let mut turns = Vec::new();
     for leg in &valleys.creases[crease].legs {
         let wheel = valleys.slopes(leg);
-        let [a, b] = [leg.xi[0].max(from), leg.xi[1].min(to)];
-        let before = rail.pieces.partition_point(|piece| piece.xi[1] <= a);
+        let over = xi.cut(leg.xi.into());
+        let before = rail.pieces.partition_point(|piece| piece.xi.high <= over.low);
         let pieces = rail.pieces.iter().enumerate().skip(before);
-        for (index, piece) in pieces.take_while(|(_, piece)| piece.xi[0] < b) {
+        for (index, piece) in pieces.take_while(|(_, piece)| piece.xi.low < over.high) {
             let bounds = rail.slopes(index);
-            let [mut left, right] = [a.max(piece.xi[0]), b.min(piece.xi[1])];
-            if left >= right {
+            let over = over.cut(piece.xi);
+            if over.low >= over.high {
                 continue;
             }
-            let slopes = [wheel[0] - bounds[1], wheel[1] - bounds[0]];
-            let upright = bounds.iter().any(|slope| slope.is_infinite());
+            let (slopes, upright) = (wheel + -bounds, bounds.magnitude().is_infinite());
             let stretch = RailStretch { valleys, leg, rail: &rail.branches[piece.branch], slopes, upright };
             turns.clear();
-            if stretch.turns([left, right], &matters, &mut turns) {
-                turns.retain(|turn| left < *turn && *turn < right);
+            if stretch.turns(over, &matters, &mut turns) {
+                turns.retain(|turn| over.low < *turn && *turn < over.high);
                 turns.sort_by(f64::total_cmp);
-                for &turn in turns.iter().chain([&right]) {
-                    intervals.push([left, turn]);
+                let mut left = over.low;
+                for &turn in turns.iter().chain([&over.high]) {
+                    intervals.push(Interval::new(left, turn));
                     left = turn;
                 }
             }
@@ -70,18 +71,18 @@ pub(crate) fn monotone(
 
 impl RailStretch<'_> {
     /// Returns whether the stretch matters; if it does, appends the ξ inside it at which s may turn.
-    fn turns(&self, xi: [f64; 2], matters: &impl Fn([f64; 2]) -> bool, turns: &mut Vec<f64>) -> bool {
-        let ends = xi.map(|xi| self.valleys.parameter(self.leg, xi));
+    fn turns(&self, xi: Interval, matters: &impl Fn(Interval) -> bool, turns: &mut Vec<f64>) -> bool {
+        let ends = xi.ends().map(|xi| self.valleys.parameter(self.leg, xi));
         let [a, b] = ends.map(|at| self.gap(at));
-        let (falls, climbs) = (self.slopes[0].min(0.0), self.slopes[1].max(0.0));
-        let length = xi[1] - xi[0];
+        let (falls, climbs) = (self.slopes.low.min(0.0), self.slopes.high.max(0.0));
+        let length = xi.width();
         // A bound that is no number decides nothing.
         let least = (a + falls * length).max(b - climbs * length);
         let most = (a + climbs * length).min(b - falls * length);
-        if !(least.is_nan() || most.is_nan() || matters([least, most])) {
+        if !(least.is_nan() || most.is_nan() || matters(Interval::new(least, most))) {
             return false;
         }
-        if self.slopes[0] > 0.0 || self.slopes[1] < 0.0 {
+        if self.slopes.low > 0.0 || self.slopes.high < 0.0 {
             return true;
         }
         let mut places = Vec::new();
@@ -92,7 +93,7 @@ impl RailStretch<'_> {
             turns.extend(places.into_iter().map(|parameter| self.rail.station_and_curvature(parameter).0.x));
         } else {
             let angles = |at: &Lanes| at.map(|at| self.angle(at));
-            sign_changes(angles, [ends[0].min(ends[1]), ends[0].max(ends[1])], ANGLE_NOISE, &mut places);
+            sign_changes(angles, Interval::between(ends[0], ends[1]), ANGLE_NOISE, &mut places);
             turns.extend(places.into_iter().map(|at| self.valleys.place(self.leg, at).0));
         }
         true
@@ -112,9 +113,9 @@ impl RailStretch<'_> {
     }
 
     /// Returns the same over the rail's own parameter, of which it is a smooth function where the rail stands upright.
-    fn angle_over_rail(&self, [left, right]: [f64; 2], parameter: f64) -> f64 {
+    fn angle_over_rail(&self, xi: Interval, parameter: f64) -> f64 {
         let rail = self.rail.station_and_curvature(parameter).0;
-        let at = self.valleys.parameter(self.leg, rail.x.clamp(left, right));
+        let at = self.valleys.parameter(self.leg, xi.nearest(rail.x));
         let (_, _, direction) = self.valleys.place(self.leg, at);
         sine_between(direction, &rail)
     }

@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 use super::circle::{Circle, FARTHEST, Turned};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
 
@@ -50,19 +51,19 @@ impl ValleyPath {
     pub(super) fn new(turned: &Turned<'_>, run: &Range<usize>) -> Self {
         let pieces = &turned.section.pieces;
         let [first, last] = [run.start, run.end - 1];
-        let ends = [turned.circle(first, pieces[first].xi[0]), turned.circle(last, pieces[last].xi[1])];
+        let ends = [turned.circle(first, pieces[first].xi.low), turned.circle(last, pieces[last].xi.high)];
         let mut path = Self { legs: Vec::new(), apart: Vec::new(), ends };
-        path.end(turned, 0, turned.parallel(first, pieces[first].xi[0]).1);
+        path.end(turned, 0, turned.parallel(first, pieces[first].xi.low).1);
         let mut before = None;
         for k in run.clone() {
             if let Some(before) = before {
-                let from = turned.parallel(before, pieces[before].xi[1]);
-                path.kink(turned, from, turned.parallel(k, pieces[k].xi[0]).1);
+                let from = turned.parallel(before, pieces[before].xi.high);
+                path.kink(turned, from, turned.parallel(k, pieces[k].xi.low).1);
             }
             path.piece(turned, k);
             before = Some(k);
         }
-        path.end(turned, 1, turned.parallel(last, pieces[last].xi[1]).1);
+        path.end(turned, 1, turned.parallel(last, pieces[last].xi.high).1);
         path
     }
 
@@ -99,7 +100,8 @@ impl ValleyPath {
 
     /// Appends the places of a piece, as legs between the folds of ξ(p).
     fn piece(&mut self, turned: &Turned<'_>, index: usize) {
-        let [a, b] = turned.section.pieces[index].xi;
+        let over = turned.section.pieces[index].xi;
+        let [a, b] = over.ends();
         let xi = |p: f64| {
             let (circle, t) = turned.parallel(index, p);
             turned.place(&circle, t).xi
@@ -109,12 +111,12 @@ impl ValleyPath {
             // Beside a vertical end of an arc the run is a function of the square root of the distance from it, which the sine
             // resolves.
             let branch = &turned.section.branches[turned.section.pieces[index].branch];
-            let [from, to] = [a, b].map(|p| branch.parameter(p));
-            let (middle, half) = (from + (to - from) / 2.0, (to - from) / 2.0);
-            let parameter = |angle: f64| (middle + half * angle.sin()).clamp(from, to);
+            let range = over.map(|p| branch.parameter(p));
+            let (middle, half) = (range.middle(), range.width() / 2.0);
+            let parameter = |angle: f64| range.nearest(middle + half * angle.sin());
             let run = |angle: &Lanes| angle.map(|angle| turned.run(branch, parameter(angle)));
             let mut turns = Vec::new();
-            sign_changes(run, [-FRAC_PI_2, FRAC_PI_2], RUN_NOISE, &mut turns);
+            sign_changes(run, Interval::of(0.0).grown(FRAC_PI_2), RUN_NOISE, &mut turns);
             let abscissa = |angle: f64| branch.station_and_curvature(parameter(angle)).0.x;
             cuts.extend(turns.into_iter().map(abscissa).filter(|p| a < *p && *p < b));
             cuts.dedup();

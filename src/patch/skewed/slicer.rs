@@ -76,7 +76,7 @@ impl<'a> Skewed<'a> {
         let mut lowest: Option<(f64, usize)> = None;
         for k in 0..self.valleys.creases.len() {
             let crease = &self.valleys.creases[k];
-            if !crease.is_valley || xi < crease.xi[0] || crease.xi[1] < xi {
+            if !crease.is_valley || xi < crease.xi.low || crease.xi.high < xi {
                 continue;
             }
             let depth = self.depth(k, xi);

@@ -20,6 +20,7 @@ use nalgebra::Vector2;
 
 use super::circle::{BESIDE, Circle, FARTHEST, Parallel, PlanePoint, Turned};
 use super::path::{Leg, ValleyPath, circle_legs};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -46,7 +47,7 @@ pub(crate) struct Spot {
 #[derive(Debug, Clone)]
 pub(crate) struct Crease {
     /// Interval of ξ \[mm\].
-    pub(crate) xi: [f64; 2],
+    pub(crate) xi: Interval,
     /// True for a valley, false for a ridge.
     pub(crate) is_valley: bool,
     /// The legs that make it up, in order of ξ.
@@ -95,12 +96,12 @@ impl<'a> Valleys<'a> {
 
     /// Returns t at which the line of constant ξ meets a leg on a circle.
     pub(super) fn turn(&self, leg: &Leg, xi: f64) -> f64 {
-        let [low, high] = [leg.range[0].min(leg.range[1]), leg.range[0].max(leg.range[1])];
-        let outside = |t: &f64| (low - t).max(t - high);
+        let range = Interval::between(leg.range[0], leg.range[1]);
+        let outside = |t: &f64| (range.low - t).max(t - range.high);
         let [one, other] = self.turned.crossings(&leg.circle, xi);
         // Rounding may move the line off a circle that it touches.
         let t = if outside(&one) <= outside(&other) { one } else { other };
-        if t.is_nan() { self.turned.touching() } else { t }.clamp(low, high)
+        range.nearest(if t.is_nan() { self.turned.touching() } else { t })
     }
 
     /// Returns the parameter of a leg at ξ: the profile abscissa \[mm\], or t on a circle.
@@ -122,24 +123,24 @@ impl<'a> Valleys<'a> {
     }
 
     /// Returns bounds of dζ/dξ along a leg.
-    pub(super) fn slopes(&self, leg: &Leg) -> [f64; 2] {
+    pub(super) fn slopes(&self, leg: &Leg) -> Interval {
         let turned = &self.turned;
         let slope = |direction: Vector2<f64>| direction.y / direction.x;
         let Some(piece) = leg.piece else {
             // Along a circle the slope is monotone up to where the circle is parallel to η; there it is infinite.
             let [a, b] = leg.range;
             let [first, middle, last] = [a, a + (b - a) / 2.0, b].map(|t| slope(turned.direction(t)));
-            let [low, high] = [first.min(last), first.max(last)];
-            let flat = if low.abs() < high.abs() { low } else { high };
+            let ends = Interval::between(first, last);
+            let flat = if ends.low.abs() < ends.high.abs() { ends.low } else { ends.high };
             return match middle {
-                middle if low <= middle && middle <= high => [low, high],
-                middle if middle > flat => [flat, f64::INFINITY],
-                _ => [f64::NEG_INFINITY, flat],
+                middle if ends.contains(middle) => ends,
+                middle if middle > flat => Interval { low: flat, ..Interval::ALL },
+                _ => Interval { high: flat, ..Interval::ALL },
             };
         };
-        let ends = turned.section.slopes(piece).map(|tangent| turned.parallel_to_tangent(tangent).1);
+        let ends = turned.section.slopes(piece).ends().map(|tangent| turned.parallel_to_tangent(tangent).1);
         // Where the surface may stand upright between the ends of the piece, ξ turns back and the leg ends.
-        if ends.iter().all(|end| end.x > 0.0) { ends.map(slope) } else { [f64::NEG_INFINITY, f64::INFINITY] }
+        if ends.iter().all(|end| end.x > 0.0) { ends.map(slope).into() } else { Interval::ALL }
     }
 
     /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
@@ -165,14 +166,14 @@ impl<'a> Valleys<'a> {
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
         // The place is C itself. A bracket with an end at 0 would be halved a thousand times.
-        if xi == 0.0 && from.min(to) <= 0.0 && from.max(to) >= 0.0 && miss(0.0) == 0.0 {
+        let range = Interval::between(from, to);
+        if xi == 0.0 && range.contains(0.0) && miss(0.0) == 0.0 {
             return 0.0;
         }
-        let [low, high] = [from.min(to), from.max(to)];
         let (mut a, mut b) = ((from, miss(from)), (to, miss(to)));
         for _ in 0..SECANTS {
             let next = b.0 - b.1 * ((b.0 - a.0) / (b.1 - a.1));
-            if b.1 == 0.0 || !(low <= next && next <= high) {
+            if b.1 == 0.0 || !range.contains(next) {
                 break;
             }
             (a, b) = (b, (next, miss(next)));
@@ -186,14 +187,13 @@ impl<'a> Valleys<'a> {
 
     /// Returns the indices of the valleys and ridges over ξ.
     pub(crate) fn over(&self, xi: f64) -> impl Iterator<Item = usize> {
-        (0..self.creases.len()).filter(move |&k| self.creases[k].xi[0] <= xi && xi <= self.creases[k].xi[1])
+        (0..self.creases.len()).filter(move |&k| self.creases[k].xi.contains(xi))
     }
 
     /// Returns whether one valley and no ridge is over a range of ξ \[mm\], throughout.
-    pub(crate) fn is_one_between(&self, [from, to]: [f64; 2]) -> bool {
-        let mut met = self.creases.iter().filter(|crease| crease.xi[0] <= to && from <= crease.xi[1]);
-        let only =
-            met.next().is_some_and(|crease| crease.is_valley && crease.xi[0] <= from && to <= crease.xi[1]);
+    pub(crate) fn is_one_between(&self, xi: Interval) -> bool {
+        let mut met = self.creases.iter().filter(|crease| crease.xi.meets(xi));
+        let only = met.next().is_some_and(|crease| crease.is_valley && crease.xi.holds(xi));
         only && met.next().is_none()
     }
 
@@ -206,20 +206,19 @@ impl<'a> Valleys<'a> {
     /// are \[ξ, ζ\] as a function of t along the circle, and the range of t.
     pub(crate) fn circles(
         &self,
-        [a, b]: [f64; 2],
-        eta: [f64; 2],
+        xi: Interval,
+        eta: Interval,
         mut visit: impl FnMut(&dyn Fn(f64) -> [f64; 2], [f64; 2]),
     ) {
         let turned = &self.turned;
         let pieces = &turned.section.pieces;
         for (k, piece) in pieces.iter().enumerate() {
-            let joined = pieces.get(k + 1).is_some_and(|next| next.xi[0] == piece.xi[1]);
-            for &p in piece.xi.iter().take(if joined { 1 } else { 2 }) {
+            let joined = pieces.get(k + 1).is_some_and(|next| next.xi.low == piece.xi.high);
+            for p in piece.xi.ends().into_iter().take(if joined { 1 } else { 2 }) {
                 let circle = turned.circle(k, p);
                 let range = turned.turns(&circle, eta);
                 let places = [range[0], range[1], turned.touching().clamp(range[0], range[1])];
-                let xi = places.map(|t| turned.place(&circle, t).xi);
-                if xi.iter().any(|xi| *xi >= a) && xi.iter().any(|xi| *xi <= b) {
+                if Interval::around(places.map(|t| turned.place(&circle, t).xi)).meets(xi) {
                     visit(&|t| [turned.place(&circle, t).xi, turned.height(&circle, t)], range);
                 }
             }
@@ -237,7 +236,7 @@ impl<'a> Valleys<'a> {
 
 impl Crease {
     fn new(legs: Vec<Leg>, is_valley: bool) -> Self {
-        let xi = [legs[0].xi[0], legs[legs.len() - 1].xi[1]];
+        let xi = Interval::new(legs[0].xi[0], legs[legs.len() - 1].xi[1]);
         Self { xi, is_valley, legs }
     }
 }
@@ -249,7 +248,7 @@ fn runs(turned: &Turned<'_>) -> Vec<Range<usize>> {
     let mut begin = 0;
     for k in 1..=pieces.len() {
         let joined = k < pieces.len()
-            && pieces[k - 1].xi[1] == pieces[k].xi[0]
+            && pieces[k - 1].xi.high == pieces[k].xi.low
             && (pieces[k - 1].heights[1] - pieces[k].heights[0]).abs() <= turned.rounding();
         if !joined {
             runs.push(begin..k);

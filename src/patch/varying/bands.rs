@@ -1,6 +1,7 @@
 //! Joins the intervals of lines where a body varies to bands.
 
-use super::lines::{Interval, Line, TO_LOWEST, Varying, links};
+use super::lines::{LineSlice, Line, TO_LOWEST, Varying, links};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};
 use crate::patch::outline::{End, Window};
@@ -21,37 +22,37 @@ pub(in crate::patch) fn bands(
     placement: &Placement,
     window: &Window,
 ) -> (Vec<Band>, Vec<Turn>) {
-    let lines = varying.lines(placement, [window.xi, window.eta]);
+    let lines = varying.lines(placement, window);
     let (mut bands, mut turns) = joined(varying, &lines, window);
     for (lane, xi) in &mut turns {
         *xi = turn(varying, *lane, *xi);
-        bands[*lane].valleys = vec![(bands[*lane].xi[1], vec![*lane])];
+        bands[*lane].valleys = vec![(bands[*lane].xi.high, vec![*lane])];
     }
     let turns = turns.into_iter().map(|(lane, xi)| Turn { valley: Some(lane), xi, depth: f64::NAN });
-    (bands.into_iter().filter(|band| band.xi[0] < band.xi[1]).collect(), turns.collect())
+    (bands.into_iter().filter(|band| band.xi.width() > 0.0).collect(), turns.collect())
 }
 
 /// Joins the intervals of successive lines to bands.
 fn joined(varying: &mut Varying<'_>, lines: &[Line], window: &Window) -> (Vec<Band>, Vec<(usize, f64)>) {
     let ends = [lines.first(), lines.last()].map(|line| line.map_or(f64::NAN, |line| line.xi));
-    let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, Interval)>>) = (Vec::new(), Vec::new());
+    let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, LineSlice)>>) = (Vec::new(), Vec::new());
     // The band of every interval of the line before.
     let mut current: Vec<usize> = Vec::new();
-    let nothing = Line { xi: ends[0], intervals: Vec::new() };
+    let nothing = Line { xi: ends[0], slices: Vec::new() };
     let pairs = std::iter::once(&nothing).chain(lines).zip(lines);
     for (before, line) in pairs {
         let links = links(before, line);
         let alone = |side: usize, k: usize| links.iter().filter(|link| link[side] == k).count() == 1;
-        let mut next = Vec::with_capacity(line.intervals.len());
-        for (j, found) in line.intervals.iter().enumerate() {
+        let mut next = Vec::with_capacity(line.slices.len());
+        for (j, found) in line.slices.iter().enumerate() {
             let from = links.iter().find(|[i, other]| *other == j && alone(0, *i) && alone(1, j));
             let band = from.map_or_else(
                 || {
                     let joins = links.iter().any(|link| link[1] == j);
                     let end =
-                        (!joins).then(|| bound(found, line.xi, [window.xi[0], ends[0]], varying.approach));
+                        (!joins).then(|| bound(found, line.xi, [window.xi.low, ends[0]], varying.approach));
                     let side = side(found, end);
-                    bands.push(Band::new([line.xi; 2], [end, None], [side; 2], window.eta));
+                    bands.push(Band::new(Interval::of(line.xi), [end, None], [side; 2], window.eta));
                     lanes.push(Vec::new());
                     bands.len() - 1
                 },
@@ -64,7 +65,7 @@ fn joined(varying: &mut Varying<'_>, lines: &[Line], window: &Window) -> (Vec<Ba
             if next.contains(&band) {
                 continue;
             }
-            let found = &before.intervals[i];
+            let found = &before.slices[i];
             let joins = links.iter().any(|link| link[0] == i);
             let end = (!joins).then(|| bound(found, before.xi, [f64::NAN; 2], varying.approach));
             // Bands that join or divide meet at one ξ.
@@ -73,13 +74,13 @@ fn joined(varying: &mut Varying<'_>, lines: &[Line], window: &Window) -> (Vec<Ba
         current = next;
     }
     if let Some(last) = lines.last() {
-        for (found, &band) in last.intervals.iter().zip(&current) {
-            let end = Some(bound(found, last.xi, [window.xi[1], ends[1]], varying.approach));
+        for (found, &band) in last.slices.iter().zip(&current) {
+            let end = Some(bound(found, last.xi, [window.xi.high, ends[1]], varying.approach));
             close(&mut bands[band], last.xi, end, side(found, end));
         }
     }
-    let deepest = |rows: &Vec<(f64, Interval)>| {
-        let least = |p: &&(f64, Interval), q: &&(f64, Interval)| p.1.lowest[1].total_cmp(&q.1.lowest[1]);
+    let deepest = |rows: &Vec<(f64, LineSlice)>| {
+        let least = |p: &&(f64, LineSlice), q: &&(f64, LineSlice)| p.1.lowest[1].total_cmp(&q.1.lowest[1]);
         rows.iter().min_by(least).map_or(f64::NAN, |row| row.0)
     };
     let turns = lanes.iter().map(deepest).enumerate().collect();
@@ -106,22 +107,22 @@ fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
     if varying.separation(turn, eta) < depth { turn } else { xi }
 }
 
-fn close(band: &mut Band, xi: f64, end: Option<End>, side: [f64; 2]) {
-    (band.xi[1], band.ends[1], band.sides[1]) = (xi, end, side);
+fn close(band: &mut Band, xi: f64, end: Option<End>, side: Interval) {
+    (band.xi.high, band.ends[1], band.sides[1]) = (xi, end, side);
 }
 
 /// Returns what bounds an interval at its ξ: the window if ξ is its end, the end of the rail, or a tip.
-fn bound(found: &Interval, xi: f64, [window, reach]: [f64; 2], approach: f64) -> End {
+fn bound(found: &LineSlice, xi: f64, [window, reach]: [f64; 2], approach: f64) -> End {
     match () {
         () if xi == window => End::Window,
         () if xi == reach => End::ProfileEnd,
-        () if approach - found.lowest[1] <= SHALLOW || found.eta[1] - found.eta[0] < NARROW => End::Tip,
+        () if approach - found.lowest[1] <= SHALLOW || found.eta.width() < NARROW => End::Tip,
         () => End::ProfileEnd,
     }
 }
 
 /// Returns the side of a band: without width at a tip that is not blunt.
-fn side(found: &Interval, end: Option<End>) -> [f64; 2] {
-    let [low, high] = found.eta;
-    if end == Some(End::Tip) && high - low < BLUNT { [found.lowest[0]; 2] } else { found.eta }
+fn side(found: &LineSlice, end: Option<End>) -> Interval {
+    let sharp = end == Some(End::Tip) && found.eta.width() < BLUNT;
+    if sharp { Interval::of(found.lowest[0]) } else { found.eta }
 }

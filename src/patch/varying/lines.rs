@@ -1,13 +1,16 @@
 //! Lines of constant ξ where a body varies, and the intervals of the patch on them. Over the rail's surface ξ is σ, and s is t + δ (1 − cos α).
 //!
 //! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
-//! nearer to each other around C. Where two neighbours differ in the number of their intervals, or an end moves far between them,
+//! nearer to each other around C. Where two neighbours differ in the number of their slices, or an end moves far between them,
 //! intervals begin, end, divide or join in between; lines are then added there until that place is known to rounding.
 //!
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
+use crate::patch::band::overlap;
 use crate::patch::level::Level;
+use crate::patch::outline::Window;
 use crate::patch::skewed::slicer::Edge;
 use crate::placement::Placement;
 
@@ -56,19 +59,19 @@ pub(super) const TO_LOWEST: f64 = 1e-6;
 /// How far an edge is looked for from its estimate, as shares of half the interval's length, the nearest first.
 const BESIDE_EDGE: [f64; 3] = [2e-3, 0.02, 0.1];
 
-/// An interval of η of the patch.
+/// A slice of the patch on a line, with its lowest place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Interval {
-    pub eta: [f64; 2],
+pub(super) struct LineSlice {
+    pub eta: Interval,
     /// Where s is least in it, and that s \[mm\].
     pub lowest: [f64; 2],
 }
 
-/// A line of constant ξ with its intervals, by ascending η.
+/// A line of constant ξ with its slices, by ascending η.
 #[derive(Debug, Clone)]
 pub(super) struct Line {
     pub xi: f64,
-    pub intervals: Vec<Interval>,
+    pub slices: Vec<LineSlice>,
 }
 
 /// The slices of a placed pair with a body that varies at one approach.
@@ -81,7 +84,7 @@ pub(in crate::patch) struct Varying<'a> {
     /// How far along the track from C the patch is looked for \[mm\].
     farthest: f64,
     /// The lines of every band.
-    pub(super) lanes: Vec<Vec<(f64, Interval)>>,
+    pub(super) lanes: Vec<Vec<(f64, LineSlice)>>,
 }
 
 impl<'a> Varying<'a> {
@@ -94,19 +97,16 @@ impl<'a> Varying<'a> {
         Self { level, approach, step, farthest, lanes: Vec::new() }
     }
 
-    /// Finds the lines over a window \[ξ, η\], from one end to the other of the range of ξ in which it holds the rail; none if it holds
+    /// Finds the lines over a window, from one end to the other of the range of ξ in which it holds the rail; none if it holds
     /// nothing of it.
-    pub(super) fn lines(&mut self, placement: &Placement, window: [[f64; 2]; 2]) -> Vec<Line> {
-        let eta = [window[1][0].max(-self.farthest), window[1][1].min(self.farthest)];
+    pub(super) fn lines(&mut self, placement: &Placement, window: &Window) -> Vec<Line> {
+        let eta = window.eta.cut(self.within());
         let reach = match self.level.normal_gap() {
             Some(gap) => gap.rail().reach(),
-            None => placement.lofted().and_then(|body| body.reach(eta)),
+            None => placement.lofted().and_then(|body| body.reach(eta.into()).map(Interval::from)),
         };
-        let Some([from, to]) = reach.filter(|_| eta[0] < eta[1]) else { return Vec::new() };
-        let xi = [window[0][0].max(from), window[0][1].min(to)];
-        if xi[0] >= xi[1] {
-            return Vec::new();
-        }
+        let over = reach.map(|reach| window.xi.cut(reach));
+        let Some(xi) = over.filter(|xi| xi.width() > 0.0 && eta.width() > 0.0) else { return Vec::new() };
         let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.whole_line(xi, eta)).collect();
         self.refined(lines)
     }
@@ -115,7 +115,7 @@ impl<'a> Varying<'a> {
     pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[Edge; 2]> {
         let edge = |eta: f64| Edge { eta, ledge: false };
         let near = self.edges_between(xi, lane);
-        near.or_else(|| self.interval(xi, lane).map(|found| found.eta)).map(|eta| eta.map(edge))
+        near.or_else(|| self.interval(xi, lane).map(|found| found.eta.ends())).map(|eta| eta.map(edge))
     }
 
     /// Finds both ends of the slice of a lane at ξ near their estimate from the lines on both sides; `None` where they are farther off.
@@ -123,10 +123,9 @@ impl<'a> Varying<'a> {
         let rows = self.lanes.get(lane?)?;
         let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
         let share = ((xi - from) / (to - from)).clamp(0.0, 1.0);
-        let half = |of: &Interval| 0.5 * (of.eta[1] - of.eta[0]);
-        let middle = |of: &Interval| 0.5 * (of.eta[0] + of.eta[1]);
-        let square = half(&a).powi(2) + share * (half(&b).powi(2) - half(&a).powi(2));
-        let (half, middle) = (square.sqrt(), middle(&a) + share * (middle(&b) - middle(&a)));
+        let square = |of: &LineSlice| (0.5 * of.eta.width()).powi(2);
+        let half = (square(&a) + share * (square(&b) - square(&a))).sqrt();
+        let middle = a.eta.middle() + share * (b.eta.middle() - a.eta.middle());
         let approach = self.approach;
         let mut found = [0.0; 2];
         for (found, outward) in found.iter_mut().zip([-1.0, 1.0]) {
@@ -150,37 +149,40 @@ impl<'a> Varying<'a> {
         if (xi - a.0).abs() <= (b.0 - xi).abs() { a.1.lowest[0] } else { b.1.lowest[0] }
     }
 
+    /// Returns how far along the track the patch is looked for \[mm\].
+    fn within(&self) -> Interval {
+        Interval::of(0.0).grown(self.farthest)
+    }
+
     /// Returns s \[mm\].
     pub(in crate::patch) fn separation(&mut self, xi: f64, eta: f64) -> f64 {
         self.level.gap(xi, eta)
     }
 
     /// Finds the interval of a lane at ξ, that nearest to those of the lines on both sides; without a lane the deepest one.
-    fn interval(&mut self, xi: f64, lane: Option<usize>) -> Option<Interval> {
+    fn interval(&mut self, xi: f64, lane: Option<usize>) -> Option<LineSlice> {
         let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else {
-            let found = self.whole_line(xi, [-self.farthest, self.farthest]);
-            return found.intervals.into_iter().min_by(|a, b| a.lowest[1].total_cmp(&b.lowest[1]));
+            let found = self.whole_line(xi, self.within());
+            return found.slices.into_iter().min_by(|a, b| a.lowest[1].total_cmp(&b.lowest[1]));
         };
         let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
         let share = if to > from { ((xi - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        let middle = |of: &Interval| 0.5 * (of.eta[0] + of.eta[1]);
-        let near = middle(&a) + share * (middle(&b) - middle(&a));
-        let hull = [a.eta[0].min(b.eta[0]), a.eta[1].max(b.eta[1])];
+        let near = a.eta.middle() + share * (b.eta.middle() - a.eta.middle());
         let mut samples = Vec::new();
-        spread(hull, &mut samples);
-        let away = |of: &Interval| (near.clamp(of.eta[0], of.eta[1]) - near).abs();
+        spread(a.eta.hull(b.eta), &mut samples);
+        let away = |of: &LineSlice| (of.eta.nearest(near) - near).abs();
         let line = self.line(xi, &samples);
-        line.intervals.into_iter().min_by(|p, q| away(p).total_cmp(&away(q)))
+        line.slices.into_iter().min_by(|p, q| away(p).total_cmp(&away(q)))
     }
 
     /// Finds the intervals along a line between two η \[mm\].
-    fn whole_line(&mut self, xi: f64, ends: [f64; 2]) -> Line {
+    fn whole_line(&mut self, xi: f64, eta: Interval) -> Line {
         let mut points: Vec<[f64; 2]> = Vec::new();
-        let [from, to] = ends;
-        for eta in places([(-self.step).clamp(from, to), self.step.clamp(from, to)], self.step) {
+        let near = Interval::of(0.0).grown(self.step).map(|place| eta.nearest(place));
+        for eta in places(near, self.step) {
             points.push([eta, self.separation(xi, eta)]);
         }
-        for (end, outward) in ends.into_iter().zip([-1.0, 1.0]) {
+        for (end, outward) in eta.ends().into_iter().zip([-1.0, 1.0]) {
             points.reverse();
             while let Some(&[eta, s]) = points.last().filter(|[eta, _]| (end - eta) * outward > 0.0) {
                 // NaN, where there is no surface, makes the shortest step.
@@ -218,29 +220,29 @@ impl<'a> Varying<'a> {
                 points.insert(at, [eta, s]);
             }
         }
-        let mut intervals: Vec<Interval> = Vec::new();
-        let mut open: Option<Interval> = None;
+        let mut slices: Vec<LineSlice> = Vec::new();
+        let mut open: Option<LineSlice> = None;
         for k in 0..points.len() {
             let [eta, s] = points[k];
             let inside = s < approach;
             if inside && open.is_none() {
                 let from = if k == 0 { eta } else { self.edge(xi, eta, points[k - 1][0]) };
-                open = Some(Interval { eta: [from, eta], lowest: [eta, s] });
+                open = Some(LineSlice { eta: Interval::new(from, eta), lowest: [eta, s] });
             }
             if let Some(found) = open.as_mut().filter(|_| inside) {
-                found.eta[1] = eta;
+                found.eta.high = eta;
                 if s < found.lowest[1] {
                     found.lowest = [eta, s];
                 }
             }
             if let Some(mut found) = open.take_if(|_| !inside) {
-                found.eta[1] = self.edge(xi, points[k - 1][0], eta);
-                intervals.push(found);
+                found.eta.high = self.edge(xi, points[k - 1][0], eta);
+                slices.push(found);
             }
         }
-        intervals.extend(open);
-        intervals.retain(|found| approach - found.lowest[1] > ROUNDING);
-        Line { xi, intervals }
+        slices.extend(open);
+        slices.retain(|found| approach - found.lowest[1] > ROUNDING);
+        Line { xi, slices }
     }
 
     /// Finds the end of an interval between a place inside and one outside.
@@ -264,7 +266,7 @@ impl<'a> Varying<'a> {
                 continue;
             }
             let mut samples = Vec::new();
-            last.intervals.iter().chain(&next.intervals).for_each(|found| spread(found.eta, &mut samples));
+            last.slices.iter().chain(&next.slices).for_each(|found| spread(found.eta, &mut samples));
             samples.sort_by(f64::total_cmp);
             samples.dedup();
             let between = self.line(last.xi + 0.5 * (next.xi - last.xi), &samples);
@@ -276,48 +278,46 @@ impl<'a> Varying<'a> {
 
 /// Lists the pairs of overlapping intervals of two lines.
 pub(super) fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
-    let all = (0..a.intervals.len()).flat_map(|i| (0..b.intervals.len()).map(move |j| [i, j]));
-    let overlap = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a.max(c) < b.min(d);
-    all.filter(|&[i, j]| overlap(a.intervals[i].eta, b.intervals[j].eta)).collect()
+    let all = (0..a.slices.len()).flat_map(|i| (0..b.slices.len()).map(move |j| [i, j]));
+    all.filter(|&[i, j]| overlap(a.slices[i].eta, b.slices[j].eta)).collect()
 }
 
 /// Tells whether the intervals of two lines answer each other one to one, and none has an end that moves by more than a step \[mm\] or
 /// [`STEEPEST`] times the distance of the lines: another interval may begin and join it in between.
 fn answer(a: &Line, b: &Line, step: f64) -> bool {
-    let (count, farthest) = (a.intervals.len(), step.max(STEEPEST * (b.xi - a.xi)));
+    let (count, farthest) = (a.slices.len(), step.max(STEEPEST * (b.xi - a.xi)));
     let near = |[i, j]: &[usize; 2]| {
-        let [from, to] = [a.intervals[*i].eta, b.intervals[*j].eta];
+        let [from, to] = [a.slices[*i].eta, b.slices[*j].eta];
         i == j && (0..2).all(|end| (to[end] - from[end]).abs() <= farthest)
     };
-    count == b.intervals.len() && {
+    count == b.slices.len() && {
         let links = links(a, b);
         links.len() == count && links.iter().all(near)
     }
 }
 
 /// The indices of the rows on both sides of ξ.
-fn beside(rows: &[(f64, Interval)], xi: f64) -> [usize; 2] {
+fn beside(rows: &[(f64, LineSlice)], xi: f64) -> [usize; 2] {
     let last = rows.len() - 1;
     let after = rows.partition_point(|row| row.0 < xi).min(last);
     [after.saturating_sub(1), after]
 }
 
 /// Adds points over an interval and beyond.
-fn spread([low, high]: [f64; 2], out: &mut Vec<f64>) {
-    let more = BEYOND * (high - low);
-    let (from, length) = (low - more, high - low + 2.0 * more);
-    out.extend((0..=POINTS).map(|k| from + length * k as f64 / POINTS as f64));
+fn spread(eta: Interval, out: &mut Vec<f64>) {
+    let wide = eta.grown(BEYOND * eta.width());
+    out.extend((0..=POINTS).map(|k| wide.low + wide.width() * k as f64 / POINTS as f64));
 }
 
 /// Places in steps over an interval, with its ends; nearer to each other around 0 if that lies inside.
-fn places([from, to]: [f64; 2], step: f64) -> Vec<f64> {
-    let count = ((to - from) / step).ceil().max(1.0) as usize;
-    let place = |k: usize| from + (to - from) * k as f64 / count as f64;
+fn places(over: Interval, step: f64) -> Vec<f64> {
+    let count = (over.width() / step).ceil().max(1.0) as usize;
+    let place = |k: usize| over.low + over.width() * k as f64 / count as f64;
     // The last one without rounding, which would push it out of the interval.
-    let mut out: Vec<f64> = (0..count).map(place).chain([to]).collect();
+    let mut out: Vec<f64> = (0..count).map(place).chain([over.high]).collect();
     out.push(0.0);
     out.extend((0..HALVINGS).flat_map(|k| [1.0, -1.0].map(|sign| sign * step * 0.5f64.powi(k))));
-    out.retain(|place| (from..=to).contains(place));
+    out.retain(|place| over.contains(*place));
     out.sort_by(f64::total_cmp);
     out.dedup();
     out
@@ -331,7 +331,7 @@ mod tests {
     fn places_hold_both_ends_whatever_the_rounding() {
         for k in 0..1000 {
             let ends = [-40.0 - 0.017 * f64::from(k), 15.0 + 0.0131 * f64::from(k)];
-            let places = places(ends, STEP);
+            let places = places(ends.into(), STEP);
             assert_eq!([places[0], places[places.len() - 1]], ends);
             assert!(places.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] < STEP + 1e-12));
         }

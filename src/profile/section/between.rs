@@ -2,6 +2,7 @@
 //! parallel to a line.
 
 use super::branch::{ArcBranch, Branch, BranchShape};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, lanes};
 use crate::numerics::polynomial::{derivative, value};
 use crate::numerics::sign_changes::sign_changes;
@@ -22,9 +23,10 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
         return parallel(rail, wheel).filter(|&xi| xi > a && xi < b).into_iter().collect();
     }
     let mut found = Vec::new();
-    let [slope_r, slope_w] = [rail, wheel].map(|branch| branch.slope_bounds(a, b));
-    let upright = |slopes: [f64; 2]| slopes.iter().any(|slope| slope.is_infinite());
-    if a >= b || slope_w[0] > slope_r[1] || slope_w[1] < slope_r[0] {
+    let over = Interval::new(a, b);
+    let [slope_r, slope_w] = [rail, wheel].map(|branch| branch.slope_bounds(over));
+    let upright = |slopes: Interval| slopes.magnitude().is_infinite();
+    if a >= b || !slope_w.meets(slope_r) {
         return found;
     }
     if upright(slope_r) || upright(slope_w) {
@@ -33,10 +35,10 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
         let at = |parameter: f64| own.station_and_curvature(parameter).0;
         let sine = |parameter: f64| {
             let here = at(parameter);
-            let there = other.station(here.x.clamp(a, b));
+            let there = other.station(over.nearest(here.x));
             here.sin * there.cos - here.cos * there.sin
         };
-        let ends = [a, b].map(|xi| own.parameter(xi));
+        let ends = over.map(|xi| own.parameter(xi));
         sign_changes(|parameters: &Lanes| parameters.map(sine), ends, SLOPE_NOISE, &mut found);
         found.iter_mut().for_each(|parameter| *parameter = at(*parameter).x);
     } else {
@@ -45,7 +47,7 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
             let many = pulp::Arch::new().dispatch(SlopeDifferences { rail, wheel, xi });
             many.unwrap_or_else(|| xi.map(slope))
         };
-        sign_changes(slopes, [a, b], SLOPE_NOISE, &mut found);
+        sign_changes(slopes, over, SLOPE_NOISE, &mut found);
     }
     found.retain(|xi| a < *xi && *xi < b);
     found
@@ -72,7 +74,7 @@ impl pulp::WithSimd for SlopeDifferences<'_> {
 ///
 /// Method: on an arc the sine of the tangent angle is linear in ξ. On a polynomial it is where the component across the line
 /// changes its sign. Degenerate case: a branch that has the direction everywhere gives the middle of the interval.
-pub fn parallel_to(branch: &Branch, n: [f64; 2], [a, b]: [f64; 2]) -> Vec<f64> {
+pub fn parallel_to(branch: &Branch, n: [f64; 2], over: Interval) -> Vec<f64> {
     let mut found = Vec::new();
     match &branch.shape {
         BranchShape::Arc(arc) => {
@@ -84,17 +86,16 @@ pub fn parallel_to(branch: &Branch, n: [f64; 2], [a, b]: [f64; 2]) -> Vec<f64> {
             let term = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
             let across: Vec<f64> =
                 (0..dx.len().max(dz.len())).map(|k| term(&dx, k) * n[1] - term(&dz, k) * n[0]).collect();
-            let ends = [p.parameter(a), p.parameter(b)];
-            let farthest = ends[0].abs().max(ends[1].abs());
-            let size = value(&across.iter().map(|c| c.abs()).collect::<Vec<_>>(), farthest);
-            if ends[0] < ends[1] {
+            let ends = p.parameters(over);
+            let size = value(&across.iter().map(|c| c.abs()).collect::<Vec<_>>(), ends.magnitude());
+            if ends.width() > 0.0 {
                 let many = |t: &Lanes| t.map(|t| value(&across, t));
                 sign_changes(many, ends, f64::EPSILON * size, &mut found);
             }
             found.iter_mut().for_each(|t| *t = value(&p.xi, *t));
         }
     }
-    found.retain(|&xi| a < xi && xi < b);
+    found.retain(|&xi| over.low < xi && xi < over.high);
     found
 }
 

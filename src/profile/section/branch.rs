@@ -8,7 +8,7 @@ use super::points::{self, BranchPoint, BranchPoints, repeated};
 use super::span::{TurnedPolynomial, View};
 use super::turned::{rising_parts, seen_from, seen_from_own_point};
 use crate::numerics::cosine;
-use crate::numerics::interval::ordered;
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{derivatives, exact_values, value, value_and_slope, values_and_slopes};
 use crate::numerics::twice::Twice;
@@ -25,7 +25,7 @@ const STEEP_LINE: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct Branch {
     /// Interval of ξ \[mm\].
-    pub xi: [f64; 2],
+    pub xi: Interval,
     /// Index of the segment that the branch is a part of.
     pub segment: usize,
     /// The curve.
@@ -138,11 +138,11 @@ impl Branch {
         let sines = [if begins { start.sin } else { -quarter }, if ends { end.sin } else { quarter }];
         let known = if begins { start } else { end };
         let abscissa = |sin: f64| known.x + (sin - known.sin) * arc.radius;
-        let xi = [
+        let xi = Interval::new(
             if begins { start.x } else { abscissa(sines[0]) },
             if ends { end.x } else { abscissa(sines[1]) },
-        ];
-        if xi[0] >= xi[1] {
+        );
+        if xi.low >= xi.high {
             return None;
         }
         let curvature = arc.curvature();
@@ -176,9 +176,9 @@ impl Branch {
     /// Makes the branch begin at `joint`, where its left neighbour ends. The two segments round a common joint differently,
     /// and the smallest gap between two pieces would be an end of the profile.
     pub(super) fn begin_at(&mut self, joint: f64) {
-        if joint < self.xi[1] {
-            let heights = self.xi.map(|xi| self.height(xi));
-            self.xi[0] = joint;
+        if joint < self.xi.high {
+            let heights = self.xi.ends().map(|xi| self.height(xi));
+            self.xi.low = joint;
             self.keep_ends(heights);
         }
     }
@@ -186,7 +186,7 @@ impl Branch {
     /// Makes a steep line run through the heights of its ends. A line by its angle misses them by the rounding of ξ times
     /// the slope. On a line that is vertical to rounding, that is the whole length.
     fn keep_ends(&mut self, [from, to]: [f64; 2]) {
-        let [a, b] = self.xi;
+        let [a, b] = self.xi.ends();
         if let BranchShape::Arc(line) = &mut self.shape
             && self.kind == BranchKind::Plain
             && line.curvature == 0.0
@@ -206,7 +206,7 @@ impl Branch {
     ) -> Self {
         let [from, to] = [0, 1].map(|end| view.spans[span].end(end, &view.frame));
         Self {
-            xi: [joint.filter(|joint| *joint < to[0]).unwrap_or(from[0]), to[0]],
+            xi: Interval::new(joint.filter(|joint| *joint < to[0]).unwrap_or(from[0]), to[0]),
             segment,
             shape: BranchShape::Polynomial(TurnedPolynomial::of_span(view, span)),
             begins_segment: true,
@@ -231,12 +231,12 @@ impl Branch {
         let whole = PolynomialBranch::new(exact, range);
         let kind = if contact.is_some() { BranchKind::Contact } else { BranchKind::Plain };
         let mut parts = rising_parts([&whole.xi, &whole.zeta], range);
-        parts.retain(|[a, b]| kind == BranchKind::Plain || (*a <= 0.0 && *b >= 0.0));
-        let branch = |t: [f64; 2], whole: PolynomialBranch| {
+        parts.retain(|t| kind == BranchKind::Plain || t.contains(0.0));
+        let branch = |t: Interval, whole: PolynomialBranch| {
             let xi = t.map(|t| value(&whole.xi, t));
             let part = PolynomialBranch { t, ends: xi, ..whole };
             let shape = BranchShape::Polynomial(TurnedPolynomial::of_part(view, span, part));
-            let (begins_segment, ends_segment) = (t[0] == range[0], t[1] == range[1]);
+            let (begins_segment, ends_segment) = (t.low == range.low, t.high == range.high);
             Self { xi, segment, shape, begins_segment, ends_segment, heights: None, kind }
         };
         // The last part takes over the coefficients, because nearly always there is only one part.
@@ -427,28 +427,28 @@ impl Branch {
         self.station_and_curvature(self.parameter(xi)).1
     }
 
-    /// Computes bounds of ζ′ over \[a, b\] that enclose every value; of a polynomial over all of it, where they are known. They are
+    /// Computes bounds of ζ′ over an interval of ξ that enclose every value; of a polynomial over all of it, where they are known. They are
     /// infinite where the branch is vertical.
-    pub fn slope_bounds(&self, a: f64, b: f64) -> [f64; 2] {
+    pub fn slope_bounds(&self, xi: Interval) -> Interval {
         match &self.shape {
-            BranchShape::Arc(_) => self.derivative_bounds(a, b)[0],
-            BranchShape::Polynomial(p) => p.slopes().unwrap_or_else(|| p.rates(a, b).1),
+            BranchShape::Arc(_) => self.derivative_bounds(xi)[0],
+            BranchShape::Polynomial(p) => p.slopes().unwrap_or_else(|| p.rates(xi).1),
         }
     }
 
-    /// Computes bounds of ζ′ and of ζ″ \[1/mm\] over \[a, b\] that enclose every value. They are infinite where the branch
+    /// Computes bounds of ζ′ and of ζ″ \[1/mm\] over an interval of ξ that enclose every value. They are infinite where the branch
     /// is vertical.
-    pub fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
+    pub fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
         match &self.shape {
             BranchShape::Arc(arc) => {
-                let ((sin_a, cos_a), (sin_b, cos_b)) = (arc.sine_cosine(a), arc.sine_cosine(b));
+                let ((sin_a, cos_a), (sin_b, cos_b)) = (arc.sine_cosine(xi.low), arc.sine_cosine(xi.high));
                 // The flattest point bounds ζ″ = κ/C³ from one side and the steeper end from the other side.
                 let flat = cosine(flattest([sin_a, sin_b]));
                 let steep = cos_a.min(cos_b);
-                let second = [arc.curvature / flat.powi(3), arc.curvature / steep.powi(3)];
-                [ordered(sin_a / cos_a, sin_b / cos_b), ordered(second[0], second[1])]
+                let second = Interval::between(arc.curvature / flat.powi(3), arc.curvature / steep.powi(3));
+                [Interval::between(sin_a / cos_a, sin_b / cos_b), second]
             }
-            BranchShape::Polynomial(p) => p.derivative_bounds(a, b),
+            BranchShape::Polynomial(p) => p.derivative_bounds(xi),
         }
     }
 }

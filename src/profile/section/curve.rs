@@ -1,7 +1,7 @@
 //! The curve of a polynomial segment in a frame.
 
 use super::points::{self, repeated};
-use crate::numerics::interval::{add, product, quotient};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{derivative, exact_values, range, value};
 use crate::numerics::twice::Twice;
@@ -15,14 +15,15 @@ pub struct PolynomialBranch {
     /// Coefficients of ζ(t).
     pub zeta: Vec<f64>,
     /// Parameter range, ξ ascending with t.
-    pub t: [f64; 2],
-    pub(super) ends: [f64; 2],
+    pub t: Interval,
+    /// Range of ξ \[mm\].
+    pub(super) ends: Interval,
     pub(super) exact: [Vec<Twice>; 2],
 }
 
 impl PolynomialBranch {
     /// Makes the branch of a whole segment from its coefficients in the frame.
-    pub(super) fn new(exact: [Vec<Twice>; 2], t: [f64; 2]) -> Self {
+    pub(super) fn new(exact: [Vec<Twice>; 2], t: Interval) -> Self {
         let [xi, zeta] = [&exact[0], &exact[1]].map(|c| c.iter().map(|c| c.high).collect::<Vec<_>>());
         let ends = t.map(|t| value(&xi, t));
         Self { xi, zeta, t, ends, exact }
@@ -41,6 +42,11 @@ impl PolynomialBranch {
         points::parameters(self.xi.as_slice(), range, &[xi], guess).map_or(f64::NAN, |[t]| t)
     }
 
+    /// Finds t over an interval of ξ.
+    pub(super) fn parameters(&self, xi: Interval) -> Interval {
+        xi.map(|xi| self.parameter(xi))
+    }
+
     /// Refines t with ξ(t) = ξ from working precision to twice the working precision.
     #[inline(always)]
     pub(super) fn exact_parameters<const N: usize>(&self, xi: &Lanes<N>, t: &Lanes<N>) -> [Twice; N] {
@@ -57,22 +63,21 @@ impl PolynomialBranch {
         exact
     }
 
-    /// Returns bounds of ξ′(t) and ζ′(t) over \[a, b\] \[mm\], and of their quotient, which are infinite where ξ′ may be 0.
-    pub(super) fn rates(&self, a: f64, b: f64) -> ([[f64; 2]; 2], [f64; 2]) {
-        let (a, b) = (self.parameter(a), self.parameter(b));
-        let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), a, b));
-        let vertical = [f64::NEG_INFINITY, f64::INFINITY];
-        (rates, if run[0] <= 0.0 { vertical } else { quotient(rise, run) })
+    /// Returns bounds of ξ′(t) and ζ′(t) over an interval of ξ \[mm\], and of their quotient, which are infinite where ξ′ may be 0.
+    pub(super) fn rates(&self, xi: Interval) -> ([Interval; 2], Interval) {
+        let t = self.parameters(xi);
+        let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), t));
+        (rates, if run.low <= 0.0 { Interval::ALL } else { rise.over(run) })
     }
 
-    pub(super) fn derivative_bounds(&self, a: f64, b: f64) -> [[f64; 2]; 2] {
-        let ([run, rise], slope) = self.rates(a, b);
-        if run[0] <= 0.0 {
+    pub(super) fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
+        let ([run, rise], slope) = self.rates(xi);
+        if run.low <= 0.0 {
             return [slope; 2];
         }
-        let (a, b) = (self.parameter(a), self.parameter(b));
-        let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), a, b));
-        let turn = add(product(sag, run), product(bend, rise).map(|v| -v));
-        [slope, quotient(turn, [run[0].powi(3), run[1].powi(3)])]
+        let t = self.parameters(xi);
+        let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), t));
+        let turn = sag * run + -(bend * rise);
+        [slope, turn.over(run.map(|v| v.powi(3)))]
     }
 }

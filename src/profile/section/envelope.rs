@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use super::branch::Branch;
 use super::points::BranchPoint;
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::profile::side::Side;
 
@@ -16,7 +17,7 @@ const LEAST_FLANGEWAY: f64 = 10.0;
 #[derive(Debug, Clone)]
 pub struct Piece {
     /// Interval of ξ \[mm\].
-    pub xi: [f64; 2],
+    pub xi: Interval,
     /// Index of the branch.
     pub branch: usize,
     /// ζ \[mm\] at the two ends, to a rounding of the profile's extent.
@@ -24,13 +25,13 @@ pub struct Piece {
     /// The two ends as points of the branch, with their ζ \[mm\], once they were asked for.
     pub(super) ends: OnceLock<Box<[(BranchPoint, f64); 2]>>,
     /// Bounds of ζ′, once they were asked for.
-    pub(super) slopes: OnceLock<[f64; 2]>,
+    pub(super) slopes: OnceLock<Interval>,
 }
 
 /// Returns the outer envelope of all branches, in order of ξ. With `at_contact` the frame is that of a contact: other heads
 /// then count only where the sheet through C has ended.
 pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<Piece> {
-    let with_heights = |(xi, branch): ([f64; 2], usize)| {
+    let with_heights = |(xi, branch): (Interval, usize)| {
         let whole = &branches[branch];
         let height = |end: usize| {
             let known = whole.heights.filter(|_| xi[end] == whole.xi[end]);
@@ -47,15 +48,15 @@ pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<P
 }
 
 /// Replaces the sheets of other heads by the sheet through C, as far as that goes.
-fn without_other_heads(branches: &[Branch], outer: Vec<([f64; 2], usize)>) -> Vec<([f64; 2], usize)> {
+fn without_other_heads(branches: &[Branch], outer: Vec<(Interval, usize)>) -> Vec<(Interval, usize)> {
     let Some(own) = sheet_at_origin(branches) else { return outer };
     if outer.iter().all(|(_, branch)| own.contains(branch)) {
         return outer;
     }
     let sheet = &branches[own.clone()];
-    let reach = [sheet[0].xi[0], sheet[sheet.len() - 1].xi[1]];
+    let reach = Interval::new(sheet[0].xi.low, sheet[sheet.len() - 1].xi.high);
     let mut other_head = vec![false; outer.len()];
-    let right = outer.partition_point(|(xi, _)| xi[1] <= 0.0);
+    let right = outer.partition_point(|(xi, _)| xi.high <= 0.0);
     // Away from C in both directions; the interval over C itself is looked at from either side.
     let ways: [(Vec<usize>, usize); 2] =
         [((right..outer.len()).collect(), 0), ((0..(right + 1).min(outer.len())).rev().collect(), 1)];
@@ -64,8 +65,8 @@ fn without_other_heads(branches: &[Branch], outer: Vec<([f64; 2], usize)>) -> Ve
         let mut other = None;
         for k in order {
             let (xi, branch) = outer[k];
-            let at = if xi[0] <= 0.0 && 0.0 <= xi[1] { 0.0 } else { xi[near] };
-            if own.contains(&branch) || at < reach[0] || reach[1] < at {
+            let at = if xi.contains(0.0) { 0.0 } else { xi[near] };
+            if own.contains(&branch) || !reach.contains(at) {
                 other = None;
                 continue;
             }
@@ -79,25 +80,25 @@ fn without_other_heads(branches: &[Branch], outer: Vec<([f64; 2], usize)>) -> Ve
             push(&mut out, xi, branch);
             continue;
         }
-        let [from, to] = [xi[0].max(reach[0]), xi[1].min(reach[1])];
-        push(&mut out, [xi[0], from], branch);
+        let own_part = xi.cut(reach);
+        push(&mut out, Interval::new(xi.low, own_part.low), branch);
         for k in own.clone() {
-            push(&mut out, [from.max(branches[k].xi[0]), to.min(branches[k].xi[1])], k);
+            push(&mut out, own_part.cut(branches[k].xi), k);
         }
-        push(&mut out, [to, xi[1]], branch);
+        push(&mut out, Interval::new(own_part.high, xi.high), branch);
     }
     out
 }
 
 /// Returns the distance \[mm\] along ζ of a branch from a sheet at ξ; 0 where the sheet has a hole there.
 fn step(branch: &Branch, sheet: &[Branch], xi: f64) -> f64 {
-    let own = sheet.iter().find(|own| own.xi[0] <= xi && xi <= own.xi[1]);
+    let own = sheet.iter().find(|own| own.xi.contains(xi));
     own.map_or(0.0, |own| (branch.height(xi) - own.height(xi)).abs())
 }
 
 /// Returns the range of the branches that go on from the one nearest to the origin without a break; `None` without branches.
 fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
-    let beside = |k: usize| 0f64.clamp(branches[k].xi[0], branches[k].xi[1]);
+    let beside = |k: usize| branches[k].xi.nearest(0.0);
     let distance = |k: usize| beside(k).hypot(branches[k].height(beside(k)));
     let first = (0..branches.len()).min_by(|&i, &j| beside(i).abs().total_cmp(&beside(j).abs()))?;
     let mut nearest = (first, distance(first));
@@ -108,7 +109,7 @@ fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
         }
     }
     let (nearest, _) = nearest;
-    let joined = |k: usize| branches[k].xi[1] == branches[k + 1].xi[0];
+    let joined = |k: usize| branches[k].xi.high == branches[k + 1].xi.low;
     let first = (0..nearest).rev().take_while(|&k| joined(k)).last().unwrap_or(nearest);
     let last = (nearest..branches.len() - 1).take_while(|&k| joined(k)).last().map_or(nearest, |k| k + 1);
     Some(first..last + 1)
@@ -117,33 +118,33 @@ fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
 /// Returns the indices of the pieces that do not begin where the piece before ends, with heights equal to `rounding` \[mm\].
 pub(super) fn steps(pieces: &[Piece], rounding: f64) -> Vec<usize> {
     let joins = |[before, piece]: [&Piece; 2]| {
-        before.xi[1] == piece.xi[0] && (piece.heights[0] - before.heights[1]).abs() <= rounding
+        before.xi.high == piece.xi.low && (piece.heights[0] - before.heights[1]).abs() <= rounding
     };
     (1..pieces.len()).filter(|&k| !joins([&pieces[k - 1], &pieces[k]])).collect()
 }
 
 /// Returns the intervals in order of ξ, each with the index of the outer branch over it.
-fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
-    if branches.is_sorted_by(|before, branch| before.xi[1] <= branch.xi[0]) {
+fn intervals(branches: &[Branch], side: Side) -> Vec<(Interval, usize)> {
+    if branches.is_sorted_by(|before, branch| before.xi.high <= branch.xi.low) {
         let mut out = Vec::with_capacity(branches.len());
         branches.iter().enumerate().for_each(|(k, branch)| push(&mut out, branch.xi, k));
         return out;
     }
-    let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi).collect();
+    let mut ends: Vec<f64> = branches.iter().flat_map(|b| b.xi.ends()).collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup();
     let mut order: Vec<usize> = (0..branches.len()).collect();
-    order.sort_by(|&a, &b| branches[a].xi[0].total_cmp(&branches[b].xi[0]));
+    order.sort_by(|&a, &b| branches[a].xi.low.total_cmp(&branches[b].xi.low));
     let mut waiting = order.into_iter().peekable();
     let mut active: Vec<usize> = Vec::new();
     let mut out = Vec::new();
     for pair in ends.windows(2) {
-        let interval = [pair[0], pair[1]];
-        while let Some(&next) = waiting.peek().filter(|&&b| branches[b].xi[0] <= interval[0]) {
+        let interval = Interval::new(pair[0], pair[1]);
+        while let Some(&next) = waiting.peek().filter(|&&b| branches[b].xi.low <= interval.low) {
             active.push(next);
             waiting.next();
         }
-        active.retain(|&b| branches[b].xi[1] >= interval[1]);
+        active.retain(|&b| branches[b].xi.high >= interval.high);
         outermost(branches, &active, interval, side, &mut out);
     }
     out
@@ -153,9 +154,9 @@ fn intervals(branches: &[Branch], side: Side) -> Vec<([f64; 2], usize)> {
 fn outermost(
     branches: &[Branch],
     active: &[usize],
-    [a, b]: [f64; 2],
+    xi: Interval,
     side: Side,
-    out: &mut Vec<([f64; 2], usize)>,
+    out: &mut Vec<(Interval, usize)>,
 ) {
     let outer = |xi: f64| {
         active.iter().copied().min_by(|&i, &j| {
@@ -163,26 +164,26 @@ fn outermost(
             if side == Side::Wheel { order } else { order.reverse() }
         })
     };
-    let (Some(first), Some(last)) = (outer(a), outer(b)) else { return };
-    let middle = a + (b - a) / 2.0;
-    if active.len() == 1 || middle <= a || middle >= b {
-        return push(out, [a, b], first);
+    let (Some(first), Some(last)) = (outer(xi.low), outer(xi.high)) else { return };
+    let middle = xi.middle();
+    if active.len() == 1 || middle <= xi.low || middle >= xi.high {
+        return push(out, xi, first);
     }
     if first == last {
         // Sheets of a chain that does not cross itself keep their order. Where they meet at an end, rounding decides.
-        return push(out, [a, b], outer(middle).unwrap_or(first));
+        return push(out, xi, outer(middle).unwrap_or(first));
     }
     let difference = |xi: f64| branches[first].height(xi) - branches[last].height(xi);
-    let cut = bracketed(difference, a, b).unwrap_or(middle);
-    push(out, [a, cut], first);
-    push(out, [cut, b], last);
+    let cut = bracketed(difference, xi.low, xi.high).unwrap_or(middle);
+    push(out, Interval::new(xi.low, cut), first);
+    push(out, Interval::new(cut, xi.high), last);
 }
 
 /// Appends an interval. If the last interval has the same branch and ends there, it is extended instead.
-fn push(out: &mut Vec<([f64; 2], usize)>, xi: [f64; 2], branch: usize) {
+fn push(out: &mut Vec<(Interval, usize)>, xi: Interval, branch: usize) {
     match out.last_mut() {
-        Some((before, last)) if *last == branch && before[1] == xi[0] => before[1] = xi[1],
-        _ if xi[0] < xi[1] => out.push((xi, branch)),
+        Some((before, last)) if *last == branch && before.high == xi.low => before.high = xi.high,
+        _ if xi.width() > 0.0 => out.push((xi, branch)),
         _ => {}
     }
 }

@@ -24,6 +24,7 @@ use super::closing::ONE_JOINT;
 use super::segment::{Segment, Shape};
 use super::side::Side;
 use super::station::Station;
+use crate::numerics::interval::Interval;
 use crate::numerics::twice::Twice;
 
 /// A point of a profile as the origin of a frame: eqs. (4.9)–(4.12).
@@ -107,50 +108,50 @@ impl Section {
 
     /// Returns the piece of the envelope that holds ξ.
     pub(crate) fn piece_at(&self, xi: f64) -> Option<&Piece> {
-        self.pieces_from(xi).first().filter(|piece| piece.xi[0] <= xi)
+        self.pieces_from(xi).first().filter(|piece| piece.xi.low <= xi)
     }
 
     /// Returns the branch of the envelope at ξ, with bounds of ζ′ over its whole piece.
-    pub(crate) fn branch_and_slopes(&self, xi: f64) -> Option<(&Branch, [f64; 2])> {
+    pub(crate) fn branch_and_slopes(&self, xi: f64) -> Option<(&Branch, Interval)> {
         let piece = self.pieces.len() - self.pieces_from(xi).len();
-        let branch = self.pieces.get(piece).filter(|piece| piece.xi[0] <= xi)?.branch;
+        let branch = self.pieces.get(piece).filter(|piece| piece.xi.low <= xi)?.branch;
         Some((&self.branches[branch], self.slopes(piece)))
     }
 
     /// Returns the pieces of the envelope that do not end before ξ.
     pub(crate) fn pieces_from(&self, xi: f64) -> &[Piece] {
-        &self.pieces[self.pieces.partition_point(|piece| piece.xi[1] < xi)..]
+        &self.pieces[self.pieces.partition_point(|piece| piece.xi.high < xi)..]
     }
 
     /// Returns bounds of ζ′ over a piece of the envelope; infinite where the piece is vertical. They are found once.
-    pub(crate) fn slopes(&self, piece: usize) -> [f64; 2] {
-        let Piece { xi: [a, b], branch, slopes, .. } = &self.pieces[piece];
-        *slopes.get_or_init(|| self.branches[*branch].slope_bounds(*a, *b))
+    pub(crate) fn slopes(&self, piece: usize) -> Interval {
+        let Piece { xi, branch, slopes, .. } = &self.pieces[piece];
+        *slopes.get_or_init(|| self.branches[*branch].slope_bounds(*xi))
     }
 
     /// Returns an end of a piece, 0 the one at smaller ξ, as a point of its branch, and its ζ \[mm\]. The ends are found once.
     pub(crate) fn end(&self, piece: &Piece, end: usize) -> (BranchPoint, f64) {
         let point = |xi| self.branches[piece.branch].point(xi);
-        piece.ends.get_or_init(|| Box::new(piece.xi.map(point)))[end]
+        piece.ends.get_or_init(|| Box::new(piece.xi.ends().map(point)))[end]
     }
 
     /// Returns the intervals of ξ \[mm\] over which the envelope has a hole or changes its height at once; ascending, without its
     /// own ends.
-    pub(crate) fn steps(&self) -> Vec<[f64; 2]> {
-        self.steps.iter().map(|&k| [self.pieces[k - 1].xi[1], self.pieces[k].xi[0]]).collect()
+    pub(crate) fn steps(&self) -> Vec<Interval> {
+        self.steps.iter().map(|&k| Interval::new(self.pieces[k - 1].xi.high, self.pieces[k].xi.low)).collect()
     }
 
     /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.
     pub fn on_contact_segment(&self, xi: f64, margin: f64) -> bool {
         self.piece_at(xi).is_some_and(|piece| {
-            self.contact == Some(piece.branch) && piece.xi[0] + margin <= xi && xi <= piece.xi[1] - margin
+            self.contact == Some(piece.branch) && piece.xi.grown(-margin).contains(xi)
         })
     }
 
     /// Returns the ends of the envelope's pieces that touch an interval of ξ \[mm\], with their ζ \[mm\], in order of ξ. A
     /// joint of two pieces comes twice.
-    pub fn joints(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
-        let pieces = self.pieces_from(from).iter().take_while(move |piece| piece.xi[0] <= to);
+    pub fn joints(&self, over: Interval) -> impl Iterator<Item = (f64, f64)> {
+        let pieces = self.pieces_from(over.low).iter().take_while(move |piece| piece.xi.low <= over.high);
         pieces.flat_map(|piece| [0, 1].map(|end| (piece.xi[end], piece.heights[end])))
     }
 
@@ -162,8 +163,8 @@ impl Section {
     }
 
     /// Returns the smallest and largest ξ with a surface; `None` if there is no surface.
-    pub fn reach(&self) -> Option<[f64; 2]> {
-        Some([self.pieces.first()?.xi[0], self.pieces.last()?.xi[1]])
+    pub fn reach(&self) -> Option<Interval> {
+        Some(Interval::new(self.pieces.first()?.xi.low, self.pieces.last()?.xi.high))
     }
 
     /// Returns the point of the profile at abscissa x \[mm\], (4.9)–(4.12); the section must be in the profile's own axes.
@@ -203,7 +204,7 @@ fn branches(
             Shape::Polynomial(polynomial) => {
                 let Some(span) = spans.next() else { break };
                 if here.is_none() && view.spans[span].slopes(frame).is_some() {
-                    let joint = branches.last().filter(|_| goes_on).map(|before| before.xi[1]);
+                    let joint = branches.last().filter(|_| goes_on).map(|before| before.xi.high);
                     branches.push(Branch::of_span(index, (view, span), joint));
                     goes_on = true;
                     continue;
@@ -213,7 +214,7 @@ fn branches(
         };
         for mut branch in seen {
             if let Some(before) = branches.last().filter(|_| goes_on && branch.begins_segment) {
-                branch.begin_at(before.xi[1]);
+                branch.begin_at(before.xi.high);
             }
             goes_on = false;
             branches.push(branch);

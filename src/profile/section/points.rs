@@ -3,6 +3,7 @@
 //!
 //! A curve is given by the coefficients of ξ(t) and ζ(t) in lanes: one curve for all lanes, or one for each.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::polynomial::{Coefficients, divided_differences, values_and_slopes};
 use crate::numerics::roots::bracketed;
@@ -74,10 +75,10 @@ impl<const N: usize> BranchPoints<N> {
     }
 }
 
-/// Returns each of two numbers N times. The arrays are written out, because the compiler may not inline `array::map`.
+/// Returns each end of an interval N times. The arrays are written out, because the compiler may not inline `array::map`.
 #[inline(always)]
-pub(super) fn repeated<const N: usize>([a, b]: [f64; 2]) -> [Lanes<N>; 2] {
-    [[a; N], [b; N]]
+pub(super) fn repeated<const N: usize>(range: Interval) -> [Lanes<N>; 2] {
+    [[range.low; N], [range.high; N]]
 }
 
 /// Finds the points of curves at abscissae `xi`, and their ζ \[mm\]. The curves have ranges of t; `ends` holds ξ at the

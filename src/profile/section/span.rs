@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::curve::PolynomialBranch;
 use super::turned::seen_from;
-use crate::numerics::interval::quotient;
+use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::{derivative, exact_value, range};
 use crate::numerics::twice::Twice;
 use crate::profile::chain::Profile;
@@ -30,7 +30,7 @@ pub(super) struct Span {
     /// Direction in the middle, as cosine and sine.
     middle: [f64; 2],
     /// Bounds of the tangents of all directions against the middle's; `None` beyond ±45°.
-    spread: Option<[f64; 2]>,
+    spread: Option<Interval>,
 }
 
 impl Span {
@@ -44,20 +44,20 @@ impl Span {
     }
 
     fn new(polynomial: &Polynomial) -> Self {
-        let [t0, t1] = polynomial.range();
+        let t = polynomial.range();
         let rates =
             [&polynomial.x, &polynomial.z].map(|c| derivative(&c.iter().map(|c| c.high).collect::<Vec<_>>()));
-        let Station { cos, sin, .. } = polynomial.station(t0 + (t1 - t0) / 2.0);
+        let Station { cos, sin, .. } = polynomial.station(t.middle());
         let get = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
         let both = (0..rates[0].len().max(rates[1].len())).map(|k| [get(&rates[0], k), get(&rates[1], k)]);
         let (along, across): (Vec<_>, Vec<_>) =
             both.map(|[dx, dz]| (dx * cos + dz * sin, dz * cos - dx * sin)).unzip();
-        let (run, rise) = (range(&along, t0, t1), range(&across, t0, t1));
-        let spread = (run[0] > 0.0).then(|| quotient(rise, run));
+        let (run, rise) = (range(&along, t), range(&across, t));
+        let spread = (run.low > 0.0).then(|| rise.over(run));
         Self {
-            ends: [t0, t1].map(|t| [&polynomial.x, &polynomial.z].map(|c| exact_value(c, t.into()))),
+            ends: t.ends().map(|t| [&polynomial.x, &polynomial.z].map(|c| exact_value(c, t.into()))),
             middle: [cos, sin],
-            spread: spread.filter(|spread| spread.iter().all(|slope| slope.abs() <= 1.0)),
+            spread: spread.filter(|spread| spread.magnitude() <= 1.0),
             polynomial: polynomial.clone(),
         }
     }
@@ -70,16 +70,16 @@ impl Span {
     }
 
     /// Returns bounds of ζ′ in a frame; `None` where it may be steeper than [`STEEPEST`], or face away.
-    pub(super) fn slopes(&self, frame: &Station) -> Option<[f64; 2]> {
+    pub(super) fn slopes(&self, frame: &Station) -> Option<Interval> {
         let [cos, sin] = self.middle;
         let (cos, sin) = (cos * frame.cos + sin * frame.sin, sin * frame.cos - cos * frame.sin);
-        let [low, high] = self.spread?.map(|tangent| [cos - tangent * sin, sin + tangent * cos]);
+        let [low, high] = self.spread?.ends().map(|tangent| [cos - tangent * sin, sin + tangent * cos]);
         let gentle = |[run, rise]: [f64; 2]| run > 0.0 && rise.abs() <= STEEPEST * run;
         if !gentle(low) || !gentle(high) {
             return None;
         }
         let [low, high] = [low, high].map(|[run, rise]| rise / run);
-        Some([low - WIDENING * (1.0 + low * low), high + WIDENING * (1.0 + high * high)])
+        Some(Interval::new(low - WIDENING * (1.0 + low * low), high + WIDENING * (1.0 + high * high)))
     }
 }
 
@@ -122,7 +122,7 @@ impl TurnedPolynomial {
     }
 
     /// Returns bounds of ζ′ over the span; `None` where they are not known without its curve.
-    pub(super) fn slopes(&self) -> Option<[f64; 2]> {
+    pub(super) fn slopes(&self) -> Option<Interval> {
         self.view.spans[self.span].slopes(&self.view.frame)
     }
 }
@@ -162,7 +162,7 @@ mod tests {
                     assert!((height - branch.height(xi)).abs() <= 5.0 * rounding, "{x}: {branch:?}");
                 }
                 for k in 0..=64 {
-                    let xi = branch.xi[0] + (branch.xi[1] - branch.xi[0]) * f64::from(k) / 64.0;
+                    let xi = branch.xi.low + (branch.xi.high - branch.xi.low) * f64::from(k) / 64.0;
                     let slope = branch.slope_from(&branch.point(xi).0);
                     assert!(low <= slope && slope <= high, "{x}: {slope} beyond [{low}, {high}]");
                 }

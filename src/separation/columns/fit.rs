@@ -52,12 +52,12 @@ impl<'a> Fitter<'a> {
     pub fn column(&mut self, xi: f64, span: &Span, u_max: f64) -> Option<ColumnPolynomial> {
         let wheel = &self.relief.wheel;
         let mut lane = wheel.lane(span);
-        lane.u[1] = [span.u[1].min(u_max)];
+        lane.u[1] = [span.u.high.min(u_max)];
         self.single.clear();
         let (n, error) = polynomials(wheel, &lane, u_max, (self.demand, self.least), &mut self.single)?;
         let mut c = [0.0; MOST_COEFFICIENTS];
         c[..n].copy_from_slice(self.single.as_flattened());
-        Some(ColumnPolynomial { base: self.relief.base(xi, 0.0, span), u0: span.u[0], c, n, error })
+        Some(ColumnPolynomial { base: self.relief.base(xi, 0.0, span), u0: span.u.low, c, n, error })
     }
 
     /// Fits several columns in no strip at once, up to `u_max` \[mm²\]: at most [`MANY`], each over one span. Their

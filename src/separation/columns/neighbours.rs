@@ -54,7 +54,7 @@ impl<'a> Neighbours<'a> {
         let mut index = wheel.first_piece(xi[MANY / 2])?;
         let rail_piece = section.piece_at(xi[MANY / 2])?;
         for piece in [rail_piece, &wheel.section.pieces[index]] {
-            if !every::<MANY>(|k| (piece.xi[0] <= xi[k]) & (xi[k] <= piece.xi[1])) {
+            if !every::<MANY>(|k| (piece.xi.low <= xi[k]) & (xi[k] <= piece.xi.high)) {
                 return None;
             }
         }
@@ -148,9 +148,9 @@ impl<'a> Neighbours<'a> {
 
 /// Finds the piece that holds ξ in its interior, and removes earlier pieces from `rest`.
 fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
-    let before = rest.iter().take_while(|piece| piece.xi[1] < xi).count();
+    let before = rest.iter().take_while(|piece| piece.xi.high < xi).count();
     *rest = &rest[before..];
-    rest.first().filter(|piece| piece.xi[0] < xi && xi < piece.xi[1])
+    rest.first().filter(|piece| piece.xi.low < xi && xi < piece.xi.high)
 }
 
 /// Finds the pieces of rail and wheel for each ξ whose column lies over one piece of each body.

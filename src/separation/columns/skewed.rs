@@ -7,6 +7,7 @@
 
 use super::horner::{MOST_COEFFICIENTS, OneRun, per_degree};
 use crate::numerics::chebyshev::{self, PROOF};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{BranchPoints, Piece};
 use crate::separation::demand::{Demand, ROUNDING_LEVEL};
@@ -63,8 +64,7 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
         let contact = branches.and_then(|(r, w)| {
             let (rail, wheel) = (&rail.branches[r], &wheel.branches[w]);
             let (from, height) = wheel.point(xi);
-            let inside = wheel.xi[0] <= xi && xi <= wheel.xi[1];
-            inside.then(|| ContactBeginning {
+            wheel.xi.contains(xi).then(|| ContactBeginning {
                 gap: contact_gap(rail, wheel, xi, height),
                 from: from.repeated(),
             })
@@ -77,10 +77,11 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
         if self.rail_height.is_nan() {
             return out.fill(f64::NAN);
         }
-        let (Some(&first), Some(&last)) = (eta.first(), eta.last()) else { return };
+        let (Some(&low), Some(&high)) = (eta.first(), eta.last()) else { return };
+        let over = Interval { low, high };
         let few = eta.len() <= MANY;
         let arch = self.arch;
-        let Some(size) = arch.dispatch(EtaInterval { column: self, ends: [first, last], eta, out }) else {
+        let Some(size) = arch.dispatch(EtaInterval { column: self, over, eta, out }) else {
             if few {
                 return self.relief.column(self.xi, eta, out);
             }
@@ -114,7 +115,7 @@ struct Size {
 /// An interval of η of a column that is to be filled. The work is compiled for each kind of machine.
 struct EtaInterval<'c, 's, 'a> {
     column: &'c mut SkewedColumn<'s, 'a>,
-    ends: [f64; 2],
+    over: Interval,
     eta: &'c [f64],
     out: &'c mut [f64],
 }
@@ -126,9 +127,9 @@ impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
     /// small as rounding.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Size> {
-        let Self { column, ends: [a, b], eta, out } = self;
+        let Self { column, over, eta, out } = self;
         let few = eta.len() <= MANY;
-        let (centre, half) = (a + (b - a) / 2.0, (b - a) / 2.0);
+        let (centre, half) = (over.middle(), over.width() / 2.0);
         let points = if few {
             lanes(|k| eta[k.min(eta.len() - 1)])
         } else {
@@ -146,24 +147,24 @@ impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
         }
         let demand = column.demand;
         let allowed = demand.absolute.min(demand.relative * size.largest);
-        let dropped = interpolate(simd, &s, [centre, half], [allowed, rounding], eta, out)?;
+        let dropped = interpolate(simd, &s, over, [allowed, rounding], eta, out)?;
         column.error = column.error.max(dropped);
         Some(size)
     }
 }
 
-/// Writes the interpolant of values at the 16 Chebyshev points of the interval centre ± half to all η \[mm\]. Returns the sum
+/// Writes the interpolant of values at the 16 Chebyshev points of an interval to all η \[mm\]. Returns the sum
 /// of the coefficients that were dropped, or `None` if too few of them are within `demand` or as small as `rounding` \[mm\].
 #[inline(always)]
 pub fn interpolate<S: pulp::Simd>(
     simd: S,
     values: &Lanes,
-    [centre, half]: [f64; 2],
+    over: Interval,
     [demand, rounding]: [f64; 2],
     eta: &[f64],
     out: &mut [f64],
 ) -> Option<f64> {
-    let c = chebyshev::coefficients(values);
+    let (c, centre, half) = (chebyshev::coefficients(values), over.middle(), over.width() / 2.0);
     let (kept, dropped) = kept(&c, demand, rounding)?;
     let mut powers = chebyshev::to_powers(&c, kept);
     let mut shrink = 1.0;
@@ -239,8 +240,7 @@ impl SkewedColumn<'_, '_> {
 #[inline(always)]
 fn spans_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece) -> Option<SpanLanes<'a, MANY>> {
     let branch = &wheel.section.branches[piece.branch];
-    let [low, high] = piece.xi;
-    let begin = lanes(|k| xi[k].max(low).min(high));
+    let begin = lanes(|k| piece.xi.nearest(xi[k]));
     let e0 = lanes(|k| if xi[k] == begin[k] { 0.0 } else { (xi[k] - begin[k]) / wheel.sin });
     Some(wheel.span_from(xi, branch, e0, branch.points(&begin)?))
 }
@@ -283,6 +283,6 @@ fn widest_step(values: &Lanes) -> f64 {
 #[inline(always)]
 fn inside(piece: &Piece, abscissae: &Lanes, between: bool) -> bool {
     let margin = if between { widest_step(abscissae) } else { 0.0 };
-    let [low, high] = [piece.xi[0] + margin, piece.xi[1] - margin];
-    abscissae.iter().all(|&abscissa| low <= abscissa && abscissa <= high)
+    let inner = piece.xi.grown(-margin);
+    abscissae.iter().all(|&abscissa| inner.contains(abscissa))
 }

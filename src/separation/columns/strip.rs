@@ -3,6 +3,7 @@
 
 use super::horner::{MOST_COEFFICIENTS, PerDegree, horner, per_degree, whole_vectors};
 use super::neighbours::MOST_SPANS;
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::separation::axis::{EtaAxis, mirror};
 use crate::separation::relief::Relief;
@@ -12,7 +13,7 @@ use crate::separation::relief::Relief;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
     /// The open interval of ξ \[mm\].
-    pub xi: [f64; 2],
+    pub xi: Interval,
     /// How s at the beginning of the columns is known.
     pub(super) gap: Gap,
     /// Number of spans.
@@ -132,7 +133,7 @@ impl Strip {
     /// Computes the polynomials over every span at each ξ \[mm\], at most [`MANY`]. The columns end at `u_max` \[mm²\].
     #[inline(always)]
     pub fn polynomials(&self, relief: &Relief<'_>, xi: &[f64], u_max: f64, spans: &mut [ColumnPolynomials]) {
-        let ([a, b], mut all) = (self.xi, [xi[0]; MANY]);
+        let (Interval { low: a, high: b }, mut all) = (self.xi, [xi[0]; MANY]);
         all[..xi.len()].copy_from_slice(xi);
         let t = lanes(|k| ((all[k] - a) - (b - all[k])) / (b - a));
         let n = self.coefficients;

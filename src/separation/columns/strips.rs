@@ -10,6 +10,7 @@ use super::fit::{Fitter, polynomials};
 use super::neighbours::{MOST_SPANS, Neighbours};
 use super::strip::{Gap, Strip};
 use crate::numerics::chebyshev::{self, PROOF};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
 use crate::separation::demand::ROUNDING_LEVEL;
 use crate::separation::relief::Relief;
@@ -30,7 +31,7 @@ pub fn strips(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64) -> Vec<Strip> {
         return Vec::new();
     }
     // The ends of the window are widened by one number, so that the first and last columns lie inside.
-    let window = [first.next_down(), last.next_up()];
+    let window = Interval::new(first.next_down(), last.next_up());
     let least = fitter.least;
     let breaks = breaks(&fitter.relief, u_max, window);
     let mut maker = Maker { fitter, u_max, least, strips: Vec::new() };
@@ -38,7 +39,7 @@ pub fn strips(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64) -> Vec<Strip> {
     for pair in breaks.windows(2) {
         rest = &rest[leading(rest, |xi| xi <= pair[0])..];
         let (inside, beyond) = rest.split_at(leading(rest, |xi| xi < pair[1]));
-        maker.divide([pair[0], pair[1]], inside);
+        maker.divide(Interval::new(pair[0], pair[1]), inside);
         rest = beyond;
     }
     maker.strips
@@ -53,7 +54,7 @@ fn leading(xi: &[f64], holds: impl Fn(f64) -> bool) -> usize {
 }
 
 /// Finds the ξ \[mm\] at which a joint of either body enters or leaves the columns, in order, with the window's two ends.
-fn breaks(relief: &Relief<'_>, u_max: f64, window: [f64; 2]) -> Vec<f64> {
+fn breaks(relief: &Relief<'_>, u_max: f64, window: Interval) -> Vec<f64> {
     let (rail, wheel) = (relief.below, &relief.wheel);
     let leaving = |(joint, height): (f64, f64)| {
         let w = wheel.axle_distance(joint, height);
@@ -61,15 +62,15 @@ fn breaks(relief: &Relief<'_>, u_max: f64, window: [f64; 2]) -> Vec<f64> {
         // not reach the edge.
         joint + wheel.sin * u_max / (w + (w * w - u_max).sqrt())
     };
-    let inside = |xi: &f64| window[0] < *xi && *xi < window[1];
+    let inside = |xi: &f64| window.low < *xi && *xi < window.high;
     // Because e ≤ w, e² ≤ u: no joint moves farther than this along ξ before it leaves.
     let far = wheel.sin.abs() * u_max.sqrt();
     let mut ends = Vec::with_capacity(MANY);
-    ends.push(window[0]);
+    ends.push(window.low);
     ends.extend(rail.joints(window).map(|(xi, _)| xi).filter(inside));
     ends.extend(wheel.section.joints(window).map(|(xi, _)| xi).filter(inside));
-    ends.extend(wheel.section.joints([window[0] - far, window[1] + far]).map(leaving).filter(inside));
-    ends.push(window[1]);
+    ends.extend(wheel.section.joints(window.grown(far)).map(leaving).filter(inside));
+    ends.push(window.high);
     // The list consists of four sorted runs, which a stable sort merges.
     ends.sort_by(f64::total_cmp);
     ends
@@ -86,26 +87,26 @@ struct Maker<'s, 'a> {
 
 impl Maker<'_, '_> {
     /// Appends strips for the columns inside an interval without breaks.
-    fn divide(&mut self, [a, b]: [f64; 2], columns: &[f64]) {
-        let middle = a + (b - a) / 2.0;
+    fn divide(&mut self, xi: Interval, columns: &[f64]) {
+        let middle = xi.middle();
         // An interval between two neighbouring numbers has no halves.
-        if columns.len() < LEAST_COLUMNS || middle <= a || middle >= b {
+        if columns.len() < LEAST_COLUMNS || middle <= xi.low || middle >= xi.high {
             return;
         }
         // The halves of such a short interval would have too few columns for strips.
         let short = columns.len() < 2 * LEAST_COLUMNS;
         let arch = self.fitter.arch;
-        let attempt =
-            Attempt { fitter: self.fitter, u_max: self.u_max, xi: [a, b], least: self.least, short };
+        let attempt = Attempt { fitter: self.fitter, u_max: self.u_max, xi, least: self.least, short };
         match arch.dispatch(attempt) {
             Some(strip) => {
                 self.least = strip.coefficients.saturating_sub(1).max(1);
                 self.strips.push(strip);
             }
             None => {
-                let (left, right) = columns.split_at(columns.partition_point(|&xi| xi < middle));
-                self.divide([a, middle], left);
-                self.divide([middle, b], right);
+                let (lower, upper) = columns.split_at(columns.partition_point(|&xi| xi < middle));
+                for (half, columns) in xi.halves().into_iter().zip([lower, upper]) {
+                    self.divide(half, columns);
+                }
             }
         }
     }
@@ -113,16 +114,16 @@ impl Maker<'_, '_> {
 
 /// Returns ξ \[mm\] at places t, which run from −1 to 1 over an interval.
 #[inline(always)]
-pub fn inside([a, b]: [f64; 2], t: &Lanes) -> Lanes {
-    let half = (b - a) / 2.0;
-    lanes(|k| a + half + half * t[k])
+pub fn inside(xi: Interval, t: &Lanes) -> Lanes {
+    let half = xi.width() / 2.0;
+    lanes(|k| xi.low + half + half * t[k])
 }
 
 /// The attempt to make one strip over an interval. It is compiled for each kind of machine.
 struct Attempt<'s, 'a> {
     fitter: &'s mut Fitter<'a>,
     u_max: f64,
-    xi: [f64; 2],
+    xi: Interval,
     least: usize,
     short: bool,
 }

@@ -53,13 +53,13 @@ fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usiz
         // A span without a polynomial is evaluated point by point and has no truncation error.
         let Some(fit) = fitter.column(xi, span, u_max) else { continue };
         needed.push(fit.n);
-        let run = span.u[1].min(u_max) - span.u[0];
+        let run = span.u.high.min(u_max) - span.u.low;
         let error = |u: f64| {
             // A place without a point on the wheel has no error.
             let point = fitter.relief.wheel.point_at(xi, span, u);
             point.map_or(0.0, |point| (fit.rise(u) - point.rise).abs())
         };
-        let inside = MEASURED.map(|share| error(span.u[0] + share * run));
+        let inside = MEASURED.map(|share| error(span.u.low + share * run));
         truncation = inside.into_iter().fold(nan_max(truncation, fit.error), f64::max);
     }
     fitter.spans = spans;

@@ -5,9 +5,10 @@
 //! iteration from the midplane leaves the profile or an arc, or does not settle, it begins anew at the point of the sagitta
 //! form; if it does not settle there either, that point is the result.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::derivatives;
 use crate::placement::Placement;
-use crate::profile::{Shape, Station};
+use crate::profile::{Segment, Shape, Station};
 use crate::separation::axis::EtaAxis;
 use crate::separation::evaluator::Evaluator;
 use crate::separation::kernel::Kernel;
@@ -51,7 +52,7 @@ pub struct ReportNewton<'a> {
     axis: &'a EtaAxis,
     /// The rail's segments; `None` for polynomials, which (6.2) does not cover.
     rail: Vec<Option<Printed>>,
-    wheel: Vec<([f64; 2], Printed)>,
+    wheel: Vec<(Interval, Printed)>,
     tolerance: f64,
     last: usize,
 }
@@ -97,8 +98,8 @@ impl<'a> ReportNewton<'a> {
     /// Makes the method for a placed pair without skew. It iterates until |Δζ| is below `tolerance` \[mm\].
     pub fn new(placement: &'a Placement, axis: &'a EtaAxis, tolerance: f64) -> Self {
         let wheel = placement.wheel().profile().segments().iter();
-        let wheel =
-            wheel.filter_map(|s| Some(([s.start().x, s.end().x], Printed::of(&s.shape, &Station::AXES)?)));
+        let over = |s: &Segment| Interval::new(s.start().x, s.end().x);
+        let wheel = wheel.filter_map(|s| Some((over(s), Printed::of(&s.shape, &Station::AXES)?)));
         let (rail, frame) = (placement.rail().profile().segments(), placement.rail().section.frame);
         Self {
             placement,
@@ -112,7 +113,7 @@ impl<'a> ReportNewton<'a> {
     }
 
     fn wheel_profile(&mut self, x: f64) -> Option<(f64, f64)> {
-        let holds = |([x0, x1], _): &([f64; 2], Printed)| *x0 <= x && x <= *x1;
+        let holds = |(xi, _): &(Interval, Printed)| xi.contains(x);
         if !self.wheel.get(self.last).is_some_and(holds) {
             self.last = self.wheel.iter().position(holds)?;
         }

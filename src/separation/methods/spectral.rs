@@ -1,6 +1,7 @@
 //! Spectral columns: q(ξ, ·) as a polynomial in u = η². They are computed by strips, by several neighbouring columns, or
 //! one by one.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::MANY;
 use crate::separation::axis::{EtaAxis, mirror};
 use crate::separation::columns::fit::Fitter;
@@ -37,8 +38,8 @@ impl<'a> Spectral<'a> {
 fn is_whole(spans: &[Span], u_max: f64) -> bool {
     let mut reached = 0.0;
     let joined = spans.iter().all(|span| {
-        let joined = span.u[0] <= reached;
-        reached = span.u[1].max(reached);
+        let joined = span.u.low <= reached;
+        reached = span.u.high.max(reached);
         joined
     });
     joined && !spans.is_empty() && reached >= u_max
@@ -46,9 +47,9 @@ fn is_whole(spans: &[Span], u_max: f64) -> bool {
 
 /// Returns the range of u \[mm²\] over which a span is the outer one, if earlier spans reach to `reached`: open at its beginning,
 /// unless that is 0. Between two spans that do not meet the wheel has no surface, and the beginning counts.
-fn outer(span: &Span, reached: f64) -> [f64; 2] {
-    let begin = if span.u[0] > reached { span.u[0].next_down() } else { reached };
-    [begin, span.u[1]]
+fn outer(span: &Span, reached: f64) -> Interval {
+    let low = if span.u.low > reached { span.u.low.next_down() } else { reached };
+    Interval { low, ..span.u }
 }
 
 impl Kernel for Spectral<'_> {
@@ -70,12 +71,12 @@ impl Kernel for Spectral<'_> {
         let mut done = 0;
         while let Some(&first) = xi.get(done) {
             let rest = &xi[done..];
-            let beyond = self.strips.partition_point(|strip| strip.xi[1] <= first);
+            let beyond = self.strips.partition_point(|strip| strip.xi.high <= first);
             let next = self.strips.get(beyond);
-            let strip = next.filter(|strip| strip.xi[0] < first);
+            let strip = next.filter(|strip| strip.xi.low < first);
             let count = match (strip, next) {
-                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi[1]),
-                (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi[0]),
+                (Some(strip), _) => rest.partition_point(|&xi| xi < strip.xi.high),
+                (None, Some(next)) => rest.partition_point(|&xi| xi <= next.xi.low),
                 (None, None) => rest.len(),
             };
             let out = &mut out[done * length..(done + count) * length];
