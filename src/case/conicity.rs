@@ -324,7 +324,7 @@ fn key_figures(
     let clearance = gauge.zip(faces).map(|(gauge, faces)| gauge - faces);
     let other = two_step.and_then(|table| table.at(AMPLITUDE).ok()).unwrap_or(f64::NAN);
     let nan = f64::NAN;
-    let missing = ContactBand { rail_x: [nan; 2], wheel_x: [nan; 2] };
+    let missing = ContactBand { rail_x: [nan; 2].into(), wheel_x: [nan; 2].into() };
     let [left, right] = figures.bands.unwrap_or([missing; 2]);
     let [gauge, faces, clearance] = [gauge, faces, clearance].map(|value| value.unwrap_or(nan));
     if clearance.is_nan() {
@@ -343,14 +343,14 @@ fn key_figures(
         faces,
         clearance,
         figures.centre.unwrap_or(nan),
-        left.rail_x[0],
-        left.rail_x[1],
-        left.wheel_x[0],
-        left.wheel_x[1],
-        right.rail_x[0],
-        right.rail_x[1],
-        right.wheel_x[0],
-        right.wheel_x[1],
+        left.rail_x.low,
+        left.rail_x.high,
+        left.wheel_x.low,
+        left.wheel_x.high,
+        right.rail_x.low,
+        right.rail_x.high,
+        right.wheel_x.low,
+        right.wheel_x.high,
     ];
     Ok((figures, findings))
 }

@@ -52,7 +52,7 @@ pub fn table(
         Some(by) => Some(([true, false].map(|left| pressed_by(by, left)), modulus)),
     };
     let yaw = yaw.unwrap_or([position.yaw; 2]);
-    let asked = Asked { lateral, yaw, roll: position.roll, tolerance, pressed };
+    let asked = Asked { lateral: lateral.into(), yaw: yaw.into(), roll: position.roll, tolerance, pressed };
     build(system, &asked)
 }
 

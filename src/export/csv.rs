@@ -53,7 +53,8 @@ pub fn table_csv(table: &ContactTable) -> String {
     let powers: String = (0..COEFFICIENTS).map(|k| format!(",c{k}")).collect();
     let mut text = format!("cell,{ends},begins,side,quantity,error{power}{powers}\n");
     for (c, cell) in table.cells().iter().enumerate() {
-        let [from, to] = if about.over_yaw() { cell.yaw } else { table.ends(c, cell.yaw[0]) };
+        let ends = if about.over_yaw() { cell.yaw } else { table.ends(c, cell.yaw.low) };
+        let [from, to] = ends.ends();
         let place = format!("{},{from:?},{to:?},{}", c + 1, table.begins(c).code());
         let mut put = |quantity: &str, error: f64, j: usize, coefficients: &[f64]| {
             let _ = write!(text, "{place},{quantity},{error:?}");

@@ -261,7 +261,7 @@ pub fn table_nc(table: &ContactTable, title: &str) -> Vec<u8> {
 
 /// Appends the attributes of a table.
 fn put_about(bytes: &mut Vec<u8>, about: About, title: &str) {
-    let [first, last] = about.yaw;
+    let [first, last] = about.yaw.ends();
     let yaws: &[_] = if about.over_yaw() {
         &[("yaw_from_rad", first), ("yaw_to_rad", last)]
     } else {
@@ -300,7 +300,7 @@ fn put_table(bytes: &mut Vec<u8>, table: &ContactTable) {
     let of = |cell| (0..quantities.len()).flat_map(move |quantity| row(cell, quantity));
     put_doubles(bytes, (0..cells.len()).flat_map(of));
     if table.about().over_yaw() {
-        put_doubles(bytes, cells.iter().flat_map(|cell| cell.yaw));
+        put_doubles(bytes, cells.iter().flat_map(|cell| cell.yaw.ends()));
     }
 }
 

@@ -9,6 +9,7 @@ use crate::case::{Case, Place, Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::measure::{Measures, Quantity};
 use crate::numerics::bodies::Bodies;
+use crate::numerics::interval::Interval;
 use crate::scene;
 use crate::search::{
     Conicity, NoConicity, ONE_CONTACT, Position, Selection, Sweep, TrackSide, WheelsetOnTrack,
@@ -176,7 +177,8 @@ impl Found {
         let bands = Bands::of(system, &template)?;
         let mut values =
             vec![value(usual), usual.ok().map(|found| found.error), value(low), value(high), slope];
-        values.extend(bands.ends.into_iter().flatten().flatten());
+        let ends = bands.reach.into_iter().flatten().flat_map(Interval::ends);
+        values.extend(ends.map(|x| Some(x).filter(|x| x.is_finite())));
         Ok(Self { values, findings, touched: bands.touched })
     }
 }
@@ -211,15 +213,15 @@ fn reason(why: NoConicity) -> &'static str {
 
 /// Where the wheels of a pair touch.
 struct Bands {
-    /// Of each side, on rail and wheel, least and largest abscissa \[mm\] within the amplitude.
-    ends: [[[Option<f64>; 2]; 2]; 2],
+    /// Of each side, on rail and wheel, the abscissae \[mm\] within the amplitude.
+    reach: [[Interval; 2]; 2],
     touched: Vec<[i32; 2]>,
 }
 
 impl Bands {
     fn of(system: &WheelsetOnTrack, template: &Position) -> Result<Self> {
         let mut sweep = Sweep::new(system, Selection { within: 0.0, apart: ONE_CONTACT }, None);
-        let mut bands = Self { ends: [[[None; 2]; 2]; 2], touched: Vec::new() };
+        let mut bands = Self { reach: [[Interval::NONE; 2]; 2], touched: Vec::new() };
         let mut rows = Vec::new();
         for number in -POSITIONS..=POSITIONS {
             rows.clear();
@@ -230,10 +232,8 @@ impl Bands {
                 // Rails are some 70 mm wide.
                 bands.touched.push([towards, (row.contact.rail_x / CELL).floor() as i32]);
                 if lateral.abs() <= AMPLITUDE {
-                    for (ends, x) in bands.ends[k].iter_mut().zip([row.contact.rail_x, row.contact.wheel_x]) {
-                        ends[0] = Some(ends[0].map_or(x, |low| low.min(x)));
-                        ends[1] = Some(ends[1].map_or(x, |high| high.max(x)));
-                    }
+                    let [rail, wheel] = bands.reach[k];
+                    bands.reach[k] = [rail.with(row.contact.rail_x), wheel.with(row.contact.wheel_x)];
                 }
             }
         }

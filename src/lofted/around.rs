@@ -13,6 +13,7 @@ use super::kept::{Curve, Form, Stretch};
 use super::section::section;
 use super::strip::Strip;
 use crate::error::{Error, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::numerics::slopes;
 use crate::profile::Profile;
 
@@ -107,8 +108,7 @@ impl LoftedWheel {
     /// positive; a profile that reaches the axle.
     pub fn out_of_round(profile: &Profile, radius: f64, deviations: &[[f64; 2]]) -> Result<Self> {
         check_radius(radius)?;
-        let [from, to] = check_rows(radius, deviations)?;
-        let middle = 0.5 * (from + to);
+        let middle = check_rows(radius, deviations)?.middle();
         Self::kept(profile, radius, middle, &[periodic_spline(deviations, radius, middle)])
     }
 
@@ -128,14 +128,14 @@ impl LoftedWheel {
         let curves = Curve::parts(&profile.upside_down());
         let beside =
             |stretch| curves.iter().enumerate().map(move |(part, curve)| Strip::kept(part, curve, stretch));
-        let reach = [middle - FAR, middle + FAR].map(|angle| radius * angle);
+        let reach = Interval::of(middle).grown(FAR).map(|angle| radius * angle);
         let loft = Loft::of_strips(stretches.iter().flat_map(beside).collect(), reach);
         Self::around(loft, radius, middle, Vec::new())
     }
 
     /// Takes a surface if it stays clear of the axle.
     fn around(loft: Loft, radius: f64, middle: f64, warnings: Vec<String>) -> Result<Self> {
-        let heights = loft.strips.iter().flat_map(Strip::intervals).map(|interval| interval.bounds(1)[1][0]);
+        let heights = loft.strips.iter().flat_map(Strip::bays).map(|bay| bay.bounds(1)[1].low);
         let nearest = heights.fold(f64::INFINITY, f64::min);
         if nearest + radius <= 0.0 {
             let found = format!("a surface up to z = {} mm", -nearest);
@@ -158,7 +158,7 @@ impl LoftedWheel {
     /// # Errors
     /// A place where the sections leave the surface undefined.
     pub fn lowest(&self, pitch: Option<f64>) -> Result<Profile> {
-        let first = self.loft.strips.first().map_or(0.0, |strip| strip.reach()[0] / self.radius);
+        let first = self.loft.strips.first().map_or(0.0, |strip| strip.reach().low / self.radius);
         let angle = pitch.map_or(first, |pitch| turned(-pitch, self.middle));
         let nowhere = || {
             let found = format!("a gap in the surface at {angle} rad");
@@ -184,8 +184,8 @@ fn check_radius(radius: f64) -> Result<()> {
     Err(Error::new("radius", format!("{radius} mm"), "a positive length in mm", "give the rolling radius"))
 }
 
-/// Checks rows \[angle in rad, deviation in mm\]; returns the first and the last angle.
-fn check_rows(radius: f64, deviations: &[[f64; 2]]) -> Result<[f64; 2]> {
+/// Checks rows \[angle in rad, deviation in mm\]; returns the range of the angles.
+fn check_rows(radius: f64, deviations: &[[f64; 2]]) -> Result<Interval> {
     let place = |k: usize| format!("radii: row {}", k + 1);
     if deviations.len() < 2 {
         let found = format!("{} rows", deviations.len());
@@ -204,13 +204,13 @@ fn check_rows(radius: f64, deviations: &[[f64; 2]]) -> Result<[f64; 2]> {
         let expected = format!("ascending angles, at least {LEAST_APART} rad apart");
         return Err(Error::new(place(k), found, expected, "sort the rows; angles are in rad"));
     }
-    let (from, to) = (deviations[0][0], deviations[deviations.len() - 1][0]);
-    if to - from > 2.0 * PI - LEAST_APART {
-        let found = format!("angles from {from} to {to} rad");
+    let range = Interval::new(deviations[0][0], deviations[deviations.len() - 1][0]);
+    if range.width() > 2.0 * PI - LEAST_APART {
+        let found = format!("angles from {} to {} rad", range.low, range.high);
         let expected = "less than a turn of 2π: the last row is joined to the first";
         return Err(Error::new("radii", found, expected, "leave out what comes twice; angles are in rad"));
     }
-    Ok([from, to])
+    Ok(range)
 }
 
 /// Returns the angle that is equal to this one but for whole turns, within π of `middle` \[rad\].

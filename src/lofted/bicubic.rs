@@ -1,5 +1,7 @@
 //! Points, derivatives and control points of a bicubic over one cell.
 
+use crate::numerics::interval::Interval;
+
 /// A point of a surface over its parameters (u, y): values and derivatives of \[x, z\] in mm; u counts cells across, y is the
 /// coordinate along the track \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +31,7 @@ pub struct Bicubic {
     /// Corners by u, then by y.
     pub(super) corners: [[Corner; 2]; 2],
     /// Ends of the cell \[mm\].
-    pub(super) y: [f64; 2],
+    pub(super) y: Interval,
 }
 
 /// Hermite's four cubics on \[0, 1\] and their first two derivatives: value and slope at 0, value and slope at 1.
@@ -48,8 +50,8 @@ impl Bicubic {
     // Inline, so that derivatives nobody takes are not computed.
     #[inline(always)]
     pub fn point(&self, f: f64, y: f64) -> SurfacePoint {
-        let step = self.y[1] - self.y[0];
-        let (u, v) = (hermite(f), hermite((y - self.y[0]) / step));
+        let step = self.y.width();
+        let (u, v) = (hermite(f), hermite((y - self.y.low) / step));
         let scaled = |row: [f64; 4], power: i32| {
             let unit = step.powi(-power);
             [row[0] * unit, row[1] * unit * step, row[2] * unit, row[3] * unit * step]
@@ -80,11 +82,11 @@ impl Bicubic {
 
     /// Returns the 4 × 4 control points \[x, y, z\] of the part over these shares across and this interval of y \[mm\]: the surface lies
     /// in their hull. The first index goes across.
-    pub fn control(&self, shares: [f64; 2], y: [f64; 2]) -> [[[f64; 3]; 4]; 4] {
-        let (du, dy) = ((shares[1] - shares[0]) / 3.0, (y[1] - y[0]) / 3.0);
+    pub fn control(&self, shares: Interval, y: Interval) -> [[[f64; 3]; 4]; 4] {
+        let (du, dy) = (shares.width() / 3.0, y.width() / 3.0);
         let mut out = [[[0.0; 3]; 4]; 4];
-        for (a, f) in shares.into_iter().enumerate() {
-            for (b, own) in y.into_iter().enumerate() {
+        for (a, f) in shares.ends().into_iter().enumerate() {
+            for (b, own) in y.ends().into_iter().enumerate() {
                 let p = self.point(f, own);
                 let (to_u, to_y) = if a == 0 { (du, b) } else { (-du, b) };
                 let to_y = if to_y == 0 { dy } else { -dy };

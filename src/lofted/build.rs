@@ -5,8 +5,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::joining::Joining;
-use super::strip::{Interval, Strip};
+use super::strip::{Bay, Strip};
 use crate::error::{Error, ErrorKind, Result, in_order};
+use crate::numerics::interval::Interval;
 use crate::profile::{Mark, Profile, trace};
 
 /// Largest distance of the points across a slice \[mm\]: a spline through points of a 13 mm radius is then off by 20 nm.
@@ -48,13 +49,13 @@ pub struct Loft {
     pub strips: Vec<Strip>,
     /// Where the slices leave the surface undefined, and why.
     pub warnings: Vec<String>,
-    reach: [f64; 2],
+    reach: Interval,
 }
 
 /// A slice with its marks, and the arc lengths at the ends of its parts; `None` for parts that it does not have.
 struct Divided {
     marks: Vec<Mark>,
-    parts: Vec<Option<[f64; 2]>>,
+    parts: Vec<Option<Interval>>,
 }
 
 impl Loft {
@@ -87,16 +88,16 @@ impl Loft {
             let expected = "a part that two successive slices have";
             return Err(Error::new("slices", "no such part", expected, "correct the features"));
         }
-        Ok(Self { strips, warnings, reach: [slices[0].at, slices[slices.len() - 1].at] })
+        Ok(Self { strips, warnings, reach: Interval::new(slices[0].at, slices[slices.len() - 1].at) })
     }
 
     /// Makes the surface of strips that cover a range of y \[mm\].
-    pub(super) fn of_strips(strips: Vec<Strip>, reach: [f64; 2]) -> Self {
+    pub(super) fn of_strips(strips: Vec<Strip>, reach: Interval) -> Self {
         Self { strips, warnings: Vec::new(), reach }
     }
 
     /// Positions of the first and of the last slice \[mm\].
-    pub fn reach(&self) -> [f64; 2] {
+    pub fn reach(&self) -> Interval {
         self.reach
     }
 
@@ -138,7 +139,7 @@ fn divide(slice: &Slice) -> Result<Divided> {
     let marks = trace(&slice.profile, MARKS);
     let length = marks.last().map_or(0.0, |mark| mark.s);
     if slice.features.len() < 2 {
-        return Ok(Divided { marks, parts: vec![Some([0.0, length])] });
+        return Ok(Divided { marks, parts: vec![Some(Interval::new(0.0, length))] });
     }
     let last = slice.features.iter().rposition(|s| *s >= 0.0);
     let scale = slice.measured_along.map_or(1.0, |polygon| length / polygon);
@@ -149,7 +150,7 @@ fn divide(slice: &Slice) -> Result<Divided> {
     let parts = (1..slice.features.len()).map(|k| {
         let Some((from, to)) = feature(k - 1).zip(feature(k)) else { return Ok(None) };
         if from < to && to <= length {
-            return Ok(Some([from, to]));
+            return Ok(Some(Interval::new(from, to)));
         }
         let found = format!("feature {} at {to} mm after one at {from} mm", k + 1);
         let expected = format!("ascending arc lengths within the {length:.3} mm of the slice");
@@ -207,7 +208,7 @@ fn jump(slices: [&Slice; 2], divided: [&Divided; 2]) -> Option<String> {
 /// Points \[x, z\] of a part on all slices of a run, at equal shares of its arc length; `total` counts those of all parts.
 fn spread_all(run: &[Divided], part: usize, total: &mut usize) -> Result<Vec<Vec<[f64; 2]>>> {
     let spans = || run.iter().filter_map(|slice| Some((slice.marks.as_slice(), slice.parts[part]?)));
-    let longest = spans().map(|(_, [from, to])| to - from).fold(0.0, f64::max);
+    let longest = spans().map(|(_, span)| span.width()).fold(0.0, f64::max);
     let cells = (longest / SPACING).ceil().max(1.0) as usize;
     *total += (cells + 1) * run.len();
     if *total > MOST_POINTS {
@@ -219,10 +220,10 @@ fn spread_all(run: &[Divided], part: usize, total: &mut usize) -> Result<Vec<Vec
 }
 
 /// Points \[x, z\] at equal shares of an arc length along a curve.
-fn spread(marks: &[Mark], [from, to]: [f64; 2], cells: usize) -> Vec<[f64; 2]> {
+fn spread(marks: &[Mark], span: Interval, cells: usize) -> Vec<[f64; 2]> {
     let mut k = 1;
     let at = |share: usize| {
-        let s = from + (to - from) * (share as f64 / cells as f64);
+        let s = span.at(share as f64 / cells as f64);
         while k + 1 < marks.len() && marks[k].s < s {
             k += 1;
         }
@@ -235,16 +236,15 @@ fn spread(marks: &[Mark], [from, to]: [f64; 2], cells: usize) -> Vec<[f64; 2]> {
 
 /// Says where a section runs backward halfway between two slices that run alike; `None` if none does.
 fn fold(strip: &Strip, slices: &[Slice]) -> Option<String> {
-    let folds = |interval: Interval<'_>, cell: usize| {
-        let [from, to] = interval.y();
-        let middle = 0.5 * (from + to);
-        let across = [from, middle, to].map(|y| interval.cell(cell).point(0.5, y).across);
+    let folds = |bay: Bay<'_>, cell: usize| {
+        let (y, middle) = (bay.y(), bay.y().middle());
+        let across = [y.low, middle, y.high].map(|y| bay.cell(cell).point(0.5, y).across);
         let dot = |a: usize, b: usize| across[a][0] * across[b][0] + across[a][1] * across[b][1];
-        let [x, z] = interval.cell(cell).point(0.5, middle).at;
-        let names = [0, 1].map(|k| &slices[interval.index() + k].name);
+        let [x, z] = bay.cell(cell).point(0.5, middle).at;
+        let names = [0, 1].map(|k| &slices[bay.index() + k].name);
         (dot(0, 2) > 0.0 && dot(0, 1) < 0.0 && dot(1, 2) < 0.0).then(|| {
             format!("a surface that folds over between {} and {}, at [{x:.1}, {z:.1}]", names[0], names[1])
         })
     };
-    strip.intervals().find_map(|interval| (0..strip.cells()).find_map(|cell| folds(interval, cell)))
+    strip.bays().find_map(|bay| (0..strip.cells()).find_map(|cell| folds(bay, cell)))
 }

@@ -14,6 +14,7 @@ use super::runs::{LEVEL, Run, runs};
 use super::space::{Laid, SpacePoint};
 use super::strip::Strip;
 use crate::error::Result;
+use crate::numerics::interval::Interval;
 use crate::profile::{self, Profile, Section, Segment, Side};
 
 /// How far along the track from C a rail is looked at \[mm\]: farther than a wheel reaches.
@@ -157,8 +158,8 @@ impl FramedLoft {
             Laid::Along(_) => FARTHEST,
             Laid::Around { radius, .. } => FARTHEST_AROUND * radius,
         };
-        let [from, to] = loft.reach().map(|y| (y - along).clamp(-farthest, farthest) / LEVEL);
-        let (first, last) = (from.floor() as i64, to.ceil() as i64);
+        let steps = loft.reach().map(|y| (y - along).clamp(-farthest, farthest) / LEVEL);
+        let (first, last) = (steps.low.floor() as i64, steps.high.ceil() as i64);
         let levels = (first..=last).map(|_| OnceLock::new()).collect();
         Self { loft, laid, origin, axes, along, levels, first, along_normal: false, plane }
     }
@@ -263,7 +264,7 @@ impl FramedLoft {
             }
             for run in self.level(level).iter().filter(|run| run.holds(xi)) {
                 let y = self.along + LEVEL * level as f64;
-                let [from, to] = self.loft.strips[run.strip].reach();
+                let [from, to] = self.loft.strips[run.strip].reach().ends();
                 if near < from - LEVEL || near > to + LEVEL {
                     continue;
                 }
@@ -347,9 +348,9 @@ impl FramedLoft {
             if share.is_nan() || share <= 0.0 {
                 return None;
             }
-            let ends = [[0.0, own.cells() as f64], own.reach()];
             // A cell or a millimetre beyond is near enough to come back from.
-            let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k][0] - 1.0, ends[k][1] + 1.0));
+            let limits = [Interval::new(0.0, own.cells() as f64), own.reach()].map(|range| range.grown(1.0));
+            let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(limits[k].low, limits[k].high));
             if next == place {
                 return None;
             }
@@ -373,13 +374,11 @@ impl FramedLoft {
     }
 
     /// The range of ξ \[mm\] over which the surface faces the other body between two η \[mm\]; `None` if it does so nowhere.
-    pub fn reach(&self, eta: [f64; 2]) -> Option<[f64; 2]> {
-        let [from, to] = eta.map(|eta| self.nearest_level(0.0, eta));
+    pub fn reach(&self, eta: Interval) -> Option<Interval> {
+        let [from, to] = eta.ends().map(|eta| self.nearest_level(0.0, eta));
         let runs = (from..=to).flat_map(|level| self.level(level));
-        let reach = runs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], run| {
-            [low.min(run.xi[0]), high.max(run.xi[run.xi.len() - 1])]
-        });
-        (reach[0] < reach[1]).then_some(reach)
+        let reach = runs.map(Run::reach).fold(Interval::NONE, Interval::hull);
+        (reach.low < reach.high).then_some(reach)
     }
 
     fn level(&self, level: i64) -> &[Run] {
@@ -392,8 +391,8 @@ impl FramedLoft {
 
 /// Whether a place lies on a strip.
 fn on(strip: &Strip, [u, y]: [f64; 2]) -> bool {
-    let [from, to] = strip.reach();
-    u >= -ROUNDING && u <= strip.cells() as f64 + ROUNDING && y >= from - ROUNDING && y <= to + ROUNDING
+    Interval::new(0.0, strip.cells() as f64).grown(ROUNDING).contains(u)
+        && strip.reach().grown(ROUNDING).contains(y)
 }
 
 impl<B: Deref<Target = FramedLoft>> Feet<B> {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::bicubic::{Bicubic, SurfacePoint, hermite};
 use super::tree::tree;
-use crate::numerics::interval::product;
+use crate::numerics::interval::Interval;
 use crate::profile::{Mark, Profile, Shape, trace};
 
 /// Largest cell across \[mm\]: its cubic is off by 0.1 nm on a 13 mm radius.
@@ -27,7 +27,7 @@ pub(super) struct Curve {
     profile: Arc<Profile>,
     cells: Vec<Cell>,
     /// Bounds of x and z over the cells: see [`tree`].
-    pub tree: Vec<[[f64; 2]; 2]>,
+    pub tree: Vec<[Interval; 2]>,
     /// How far the cells' cubics may be off \[mm\].
     off: f64,
 }
@@ -36,7 +36,7 @@ pub(super) struct Curve {
 #[derive(Debug, Clone)]
 struct Cell {
     segment: usize,
-    shares: [f64; 2],
+    shares: Interval,
     /// Coefficients of x and z in powers of the share of the cell, on a polynomial; none on an arc or a line.
     powers: Option<[Vec<f64>; 2]>,
     ends: [[[f64; 2]; 2]; 2],
@@ -88,13 +88,13 @@ impl Curve {
             let segment = run[0].segment;
             let count = (run.len() - 1) as f64;
             for k in 1..run.len() {
-                let shares = [(k - 1) as f64 / count, k as f64 / count];
-                let ends = shares.map(|share| {
+                let shares = Interval::new((k - 1) as f64 / count, k as f64 / count);
+                let ends = shares.ends().map(|share| {
                     let [at, rate, _] = profile.segments()[segment].at_share(share);
                     [at, rate.map(|rate| rate / count)]
                 });
                 let powers = match &profile.segments()[segment].shape {
-                    Shape::Polynomial(polynomial) => Some(polynomial.over(shares)),
+                    Shape::Polynomial(polynomial) => Some(polynomial.over(shares.ends())),
                     Shape::Arc(_) => None,
                 };
                 let cell = Cell { segment, shares, powers, ends };
@@ -120,8 +120,8 @@ impl Curve {
 const INSIDE: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Bounds of a cubic over one unit, given its values and slopes \[value, slope\] at both ends.
-fn hull([[a, from], [b, to]]: [[f64; 2]; 2]) -> [f64; 2] {
-    [a + from / 3.0, b, b - to / 3.0].into_iter().fold([a; 2], |[low, high], v| [low.min(v), high.max(v)])
+fn hull([[a, from], [b, to]]: [[f64; 2]; 2]) -> Interval {
+    Interval::around([a, a + from / 3.0, b, b - to / 3.0])
 }
 
 /// The cubic over a step with values and slopes at its ends: value and first two derivatives at a share of it.
@@ -148,8 +148,8 @@ impl Cell {
             let axes = powers.each_ref().map(|c| value_and_derivatives(c, f));
             return [0, 1, 2].map(|k| axes.map(|values| values[k]));
         }
-        let width = self.shares[1] - self.shares[0];
-        let [at, rate, bend] = profile.segments()[self.segment].at_share(self.shares[0] + f * width);
+        let width = self.shares.width();
+        let [at, rate, bend] = profile.segments()[self.segment].at_share(self.shares.at(f));
         [at, rate.map(|v| v * width), bend.map(|v| v * width * width)]
     }
 
@@ -167,9 +167,9 @@ impl Stretch {
         let rows = at.iter().map(|y| form.height(*y)).map(|[value, slope, _]| [value, slope]).collect();
         let mut stretch = Self { form, growth: form.growth(), at, rows, off: 0.0 };
         let errors = (1..stretch.at.len()).flat_map(|k| {
-            let (stretch, [from, to]) = (&stretch, [stretch.at[k - 1], stretch.at[k]]);
+            let (stretch, cell) = (&stretch, Interval::new(stretch.at[k - 1], stretch.at[k]));
             INSIDE.map(|f| {
-                let y = from + f * (to - from);
+                let y = cell.at(f);
                 (stretch.near(k - 1, y)[0] - form.height(y)[0]).abs()
             })
         });
@@ -197,7 +197,7 @@ impl Stretch {
     }
 
     /// Bounds of the height over a cell, of its cubic \[mm\].
-    pub fn bounds(&self, cell: usize) -> [f64; 2] {
+    pub fn bounds(&self, cell: usize) -> Interval {
         let step = self.at[cell + 1] - self.at[cell];
         hull([0, 1].map(|k| [self.rows[cell + k][0], step * self.rows[cell + k][1]]))
     }
@@ -242,10 +242,10 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// The point in a cell at a share of it across, and at y \[mm\] in an interval.
-    pub fn point(&self, interval: usize, cell: usize, f: f64, y: f64) -> SurfacePoint {
+    /// The point in a cell at a share of it across, and at y \[mm\] in a bay.
+    pub fn point(&self, bay: usize, cell: usize, f: f64, y: f64) -> SurfacePoint {
         let [at, across, across2] = self.curve.cells[cell].point(&self.curve.profile, f);
-        let [height, slope, bend] = self.stretch.height(interval, y);
+        let [height, slope, bend] = self.stretch.height(bay, y);
         let growth = self.stretch.growth;
         let (share, whole) = (1.0 + growth * height, 1.0 + growth * at[1]);
         SurfacePoint {
@@ -260,29 +260,28 @@ impl Kept {
     }
 
     /// The bicubic beside a cell.
-    pub fn cell(&self, interval: usize, cell: usize) -> Bicubic {
+    pub fn cell(&self, bay: usize, cell: usize) -> Bicubic {
         let Stretch { at, rows, growth, .. } = &self.stretch;
         let ends = &self.curve.cells[cell].ends;
         let corner = |a: usize, b: usize| {
-            let ([[x, z], [xu, zu]], [height, slope]) = (ends[a], rows[interval + b]);
+            let ([[x, z], [xu, zu]], [height, slope]) = (ends[a], rows[bay + b]);
             let (share, whole) = (1.0 + growth * height, 1.0 + growth * z);
             [[x, z + whole * height], [xu, share * zu], [0.0, whole * slope], [0.0, growth * slope * zu]]
         };
         let corners = [0, 1].map(|a| [0, 1].map(|b| corner(a, b)));
-        Bicubic { corners, y: [at[interval], at[interval + 1]] }
+        Bicubic { corners, y: Interval::new(at[bay], at[bay + 1]) }
     }
 
     /// Bounds of x and z over a node of the curve's tree, of its bicubics \[mm\].
-    pub fn bounds(&self, interval: usize, node: usize) -> [[f64; 2]; 2] {
-        let ([x, z], height) = (self.curve.tree[node], self.stretch.bounds(interval));
-        let grown = product(z, height.map(|height| 1.0 + self.stretch.growth * height));
-        [x, [grown[0] + height[0], grown[1] + height[1]]]
+    pub fn bounds(&self, bay: usize, node: usize) -> [Interval; 2] {
+        let ([x, z], height) = (self.curve.tree[node], self.stretch.bounds(bay));
+        [x, z * height.map(|height| 1.0 + self.stretch.growth * height) + height]
     }
 
     /// How far the bicubics may be off \[mm\].
     pub fn off(&self) -> f64 {
-        let [_, [low, high]] = self.curve.tree[1];
-        self.curve.off + self.stretch.off * (1.0 + self.stretch.growth * low.abs().max(high.abs()))
+        let [_, z] = self.curve.tree[1];
+        self.curve.off + self.stretch.off * (1.0 + self.stretch.growth * z.magnitude())
     }
 }
 

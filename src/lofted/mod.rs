@@ -41,7 +41,7 @@ pub use joining::Joining;
 pub use section::{joined, section};
 pub use space::{Laid, SpacePoint};
 pub(crate) use space::{directions, on_wheel};
-pub use strip::{Interval, Strip};
+pub use strip::{Bay, Strip};
 
 /// The body of a pair that varies.
 #[derive(Debug, Clone)]

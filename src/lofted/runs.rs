@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::build::Loft;
 use super::strip::Strip;
+use crate::numerics::interval::Interval;
 
 /// Distance along the surface of the sections from which feet are sought \[mm\].
 pub(super) const LEVEL: f64 = 4.0;
@@ -25,7 +26,7 @@ pub(super) struct Run {
 pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, beside: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (strip, own) in loft.strips.iter().enumerate() {
-        let [from, to] = own.reach();
+        let [from, to] = own.reach().ends();
         // A part that begins within a step is there for the feet that it leads to.
         if y < from - LEVEL || y > to + LEVEL {
             continue;
@@ -51,17 +52,15 @@ pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, besid
 
 /// Lists the cells of a strip at y \[mm\] that may lie in a run from which feet at ξ = 0 are sought, as stretches in order.
 fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64) -> Vec<Range<usize>> {
-    let (interval, farthest) = (strip.interval_at(y), 2.0 * BESIDE + strip.off());
+    let (bay, near) = (strip.bay_at(y), Interval::of(0.0).grown(2.0 * BESIDE + strip.off()));
     let (mut found, mut waiting): (Vec<Range<usize>>, _) = (Vec::new(), vec![1]);
     while let Some(node) = waiting.pop() {
-        let (cells, [x, z]) = (interval.cells(node), interval.bounds(node));
+        let (cells, [x, z]) = (bay.cells(node), bay.bounds(node).map(Interval::ends));
         let corners = x.into_iter().flat_map(|x| z.map(|z| xi([x, z], y)));
-        let [low, high] =
-            corners.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], xi| [low.min(xi), high.max(xi)]);
-        if cells.is_empty() || low > farthest || high < -farthest {
+        if cells.is_empty() || !Interval::around(corners).meets(near) {
             continue;
         }
-        if interval.only_cell(node).is_none() {
+        if bay.only_cell(node).is_none() {
             waiting.extend([2 * node + 1, 2 * node]);
             continue;
         }
@@ -74,13 +73,19 @@ fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64) -> Vec
 }
 
 impl Run {
+    /// The ξ between its ends \[mm\].
+    pub fn reach(&self) -> Interval {
+        Interval::new(self.xi[0], self.xi[self.xi.len() - 1])
+    }
+
     pub fn holds(&self, xi: f64) -> bool {
-        self.xi[0] - BESIDE <= xi && xi <= self.xi[self.xi.len() - 1] + BESIDE
+        self.reach().grown(BESIDE).contains(xi)
     }
 
     /// Whether ξ \[mm\] lies in it, off its ends.
     pub fn covers(&self, xi: f64) -> bool {
-        self.xi[0] < xi && xi < self.xi[self.xi.len() - 1]
+        let Interval { low, high } = self.reach();
+        low < xi && xi < high
     }
 
     /// The parameter u at ξ \[mm\], by straight lines.

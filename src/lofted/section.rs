@@ -16,7 +16,7 @@ const STEP: f64 = 1e-3;
 pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
     let strips = &loft.strips;
     if !strips[strip].holds(y) {
-        let [from, to] = strips[strip].reach();
+        let [from, to] = strips[strip].reach().ends();
         let expected = format!("a place from {from} to {to} mm, where this part of the rail is");
         return Err(Error::new("along", format!("{y:?} mm"), expected, "choose another place"));
     }

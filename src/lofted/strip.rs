@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::bicubic::{Bicubic, Corner, SurfacePoint};
 use super::joining::Joining;
 use super::kept::{Curve, Kept, Stretch};
-use super::tree::{NONE, around, tree};
+use super::tree::tree;
+use crate::numerics::interval::Interval;
 
 /// A part of the surface without interruption: over u from 0 to [`Strip::cells`], and over y from its first slice to its last.
 #[derive(Debug, Clone)]
@@ -22,14 +23,14 @@ pub struct Strip {
 #[derive(Debug, Clone)]
 enum Surface {
     /// Slices: the corners of all cells, slice by slice, and bounds of x and z over the cells between two slices: see [`tree`].
-    Joined { corners: Vec<Corner>, trees: Vec<Vec<[[f64; 2]; 2]>> },
+    Joined { corners: Vec<Corner>, trees: Vec<Vec<[Interval; 2]>> },
     /// A profile that keeps its shape.
     Kept(Kept),
 }
 
 /// The cells of a strip between two neighbouring slices.
 #[derive(Debug, Clone, Copy)]
-pub struct Interval<'a> {
+pub struct Bay<'a> {
     strip: &'a Strip,
     index: usize,
 }
@@ -59,13 +60,14 @@ impl Strip {
             }
         }
         let cells = nodes - 1;
-        let of_interval = |k: usize| {
+        let of_bay = |k: usize| {
             tree((0..cells).map(|cell| {
-                let control = joined(&corners, cells, &at, [k, cell]).control([0.0, 1.0], [at[k], at[k + 1]]);
-                control.iter().flatten().map(|[x, _, z]| [[*x; 2], [*z; 2]]).fold(NONE, around)
+                let bicubic = joined(&corners, cells, &at, [k, cell]);
+                let control = bicubic.control(Interval::new(0.0, 1.0), bicubic.y);
+                [0, 2].map(|axis| Interval::around(control.iter().flatten().map(|at| at[axis])))
             }))
         };
-        let trees = (0..at.len() - 1).map(of_interval).collect();
+        let trees = (0..at.len() - 1).map(of_bay).collect();
         Self { part, at, cells, surface: Surface::Joined { corners, trees } }
     }
 
@@ -89,30 +91,29 @@ impl Strip {
     }
 
     /// The interval of y that it covers \[mm\].
-    pub fn reach(&self) -> [f64; 2] {
-        [self.at[0], self.at[self.at.len() - 1]]
+    pub fn reach(&self) -> Interval {
+        Interval::new(self.at[0], self.at[self.at.len() - 1])
     }
 
     /// Whether it has a surface at y \[mm\].
     pub fn holds(&self, y: f64) -> bool {
-        let [from, to] = self.reach();
-        (from..=to).contains(&y)
+        self.reach().contains(y)
     }
 
-    /// The intervals between its slices, in order.
-    pub fn intervals(&self) -> impl Iterator<Item = Interval<'_>> {
-        (1..self.at.len()).map(|k| self.interval(k - 1))
+    /// The bays between its slices, in order.
+    pub fn bays(&self) -> impl Iterator<Item = Bay<'_>> {
+        (1..self.at.len()).map(|k| self.bay(k - 1))
     }
 
-    /// One of the intervals.
-    pub fn interval(&self, index: usize) -> Interval<'_> {
-        Interval { strip: self, index }
+    /// One of the bays.
+    pub fn bay(&self, index: usize) -> Bay<'_> {
+        Bay { strip: self, index }
     }
 
-    /// The interval that holds y \[mm\], or is next to it.
-    pub fn interval_at(&self, y: f64) -> Interval<'_> {
+    /// The bay that holds y \[mm\], or is next to it.
+    pub fn bay_at(&self, y: f64) -> Bay<'_> {
         let after = self.at.partition_point(|at| *at <= y);
-        self.interval(after.clamp(1, self.at.len() - 1) - 1)
+        self.bay(after.clamp(1, self.at.len() - 1) - 1)
     }
 
     /// Returns the point at (u, y \[mm\]); parameters beyond the strip continue its last cubics.
@@ -120,25 +121,25 @@ impl Strip {
     #[inline(always)]
     pub fn point(&self, u: f64, y: f64) -> SurfacePoint {
         let cell = (u.max(0.0) as usize).min(self.cells - 1);
-        let (interval, f) = (self.interval_at(y), u - cell as f64);
+        let (bay, f) = (self.bay_at(y), u - cell as f64);
         match &self.surface {
             Surface::Joined { corners, .. } => {
-                joined(corners, self.cells, &self.at, [interval.index, cell]).point(f, y)
+                joined(corners, self.cells, &self.at, [bay.index, cell]).point(f, y)
             }
-            Surface::Kept(kept) => kept.point(interval.index, cell, f, y),
+            Surface::Kept(kept) => kept.point(bay.index, cell, f, y),
         }
     }
 }
 
-impl<'a> Interval<'a> {
-    /// Number of the interval in its strip, from 0.
+impl<'a> Bay<'a> {
+    /// Number of the bay in its strip, from 0.
     pub fn index(&self) -> usize {
         self.index
     }
 
     /// Its ends \[mm\].
-    pub fn y(&self) -> [f64; 2] {
-        [self.strip.at[self.index], self.strip.at[self.index + 1]]
+    pub fn y(&self) -> Interval {
+        Interval::new(self.strip.at[self.index], self.strip.at[self.index + 1])
     }
 
     /// The bicubic of one of its cells, or beside it: see [`Strip::off`].
@@ -151,7 +152,7 @@ impl<'a> Interval<'a> {
     }
 
     /// Bounds of x and z \[mm\] over a node of its tree, whose root is 1: of the bicubics.
-    pub fn bounds(&self, node: usize) -> [[f64; 2]; 2] {
+    pub fn bounds(&self, node: usize) -> [Interval; 2] {
         match &self.strip.surface {
             Surface::Joined { trees, .. } => trees[self.index][node],
             Surface::Kept(kept) => kept.bounds(self.index, node),
@@ -176,10 +177,10 @@ impl<'a> Interval<'a> {
     }
 }
 
-/// The bicubic of a cell of an interval between slices.
+/// The bicubic of a cell of a bay.
 #[inline(always)]
-fn joined(corners: &[Corner], cells: usize, at: &[f64], [interval, cell]: [usize; 2]) -> Bicubic {
-    let corner = |a: usize, b: usize| corners[(interval + b) * (cells + 1) + cell + a];
+fn joined(corners: &[Corner], cells: usize, at: &[f64], [bay, cell]: [usize; 2]) -> Bicubic {
+    let corner = |a: usize, b: usize| corners[(bay + b) * (cells + 1) + cell + a];
     let corners = [0, 1].map(|a| [0, 1].map(|b| corner(a, b)));
-    Bicubic { corners, y: [at[interval], at[interval + 1]] }
+    Bicubic { corners, y: Interval::new(at[bay], at[bay + 1]) }
 }

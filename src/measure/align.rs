@@ -6,6 +6,7 @@ use super::curve::Curve;
 use super::fit::{Fit, Fitted};
 use super::nominal::{Back, Nominal, back_of, is_from_back, own_back, sized};
 use super::options::{Align, MeasureOptions};
+use crate::numerics::interval::Interval;
 use crate::profile::{Profile, Side, Station, trace};
 
 /// Distance of marks \[mm\] of curves that are fitted.
@@ -13,7 +14,7 @@ const STEP: f64 = 0.25;
 /// Sine of 60°.
 const SIXTY: f64 = 0.866_025_403_784_438_6;
 /// Ends \[mm\] of the outer tread, from where the nominal tread ends at its chamfer: 10 mm, as the MiniProf's own alignment has it.
-const OUTER: [f64; 2] = [15.0, 5.0];
+const OUTER: Interval = Interval::new(-15.0, -5.0);
 /// Sine of the inclination at which a tread ends, 30°.
 const TREAD_END: f64 = 0.5;
 /// Vertical wear \[mm\] from which the fit of a rail starts, the best start counts.
@@ -193,7 +194,8 @@ fn fitted(
 fn starts(measured: &Curve, nominal: &Curve, side: Side) -> Vec<Station> {
     let sign = if side == Side::Rail { 1.0 } else { -1.0 };
     let ends = |curve: &Curve| {
-        let outer = if side == Side::Rail { curve.width()[1] } else { curve.width()[0] };
+        let x = curve.extent();
+        let outer = if side == Side::Rail { x.high } else { x.low };
         let best = curve.highest(sign);
         let back = side == Side::Rail || back_of(curve).is_ok();
         (best.filter(|_| !back).map_or(outer, |tip| tip.x), best.map_or(0.0, |best| best.z), back)
@@ -211,10 +213,10 @@ fn starts(measured: &Curve, nominal: &Curve, side: Side) -> Vec<Station> {
 fn parts(nominal: &Curve, side: Side, align: Align, options: &MeasureOptions) -> (Vec<bool>, String) {
     let marks = &nominal.marks;
     let stations = || marks.iter().map(|mark| mark.station);
-    let [first, last] = nominal.width();
+    let [first, last] = nominal.extent().ends();
     match (align, side) {
         (Align::Unworn, _) => {
-            let inside = |x: f64| options.unworn.iter().any(|[low, high]| (*low..=*high).contains(&x));
+            let inside = |x: f64| options.unworn.iter().any(|range| range.contains(x));
             (stations().map(|at| inside(at.x)).collect(), "the given ranges".into())
         }
         (Align::Web, _) => {
@@ -231,9 +233,9 @@ fn parts(nominal: &Curve, side: Side, align: Align, options: &MeasureOptions) ->
             let tip = nominal.highest(-1.0).map_or(0, |tip| tip.mark);
             let flat = |k: usize| k > tip && marks[k].station.sin.abs() <= TREAD_END;
             let end = (0..marks.len()).rev().find(|&k| flat(k)).map_or(last, |k| marks[k].station.x);
-            let outer = end - OUTER[0]..=end - OUTER[1];
+            let outer = OUTER + end;
             let part = |(k, at): (usize, Station)| {
-                if k <= tip { at.sin <= -SIXTY } else { outer.contains(&at.x) && flat(k) }
+                if k <= tip { at.sin <= -SIXTY } else { outer.contains(at.x) && flat(k) }
             };
             (stations().enumerate().map(part).collect(), "flange back and outer tread".into())
         }

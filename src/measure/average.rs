@@ -6,6 +6,7 @@ use super::nominal::Nominal;
 use super::options::MeasureOptions;
 use super::overlay::across;
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 use crate::profile::{Profile, Side, Station};
 
 /// Distance of the points along the average \[mm\], as of hand-held instruments.
@@ -21,7 +22,7 @@ pub struct AveragePoint {
     /// Standard deviation of the profiles along the normal, n − 1 under the root.
     pub spread: f64,
     /// Offsets of the lowest and the highest profile along the normal.
-    pub range: [f64; 2],
+    pub range: Interval,
     /// Number of profiles that are there.
     pub count: usize,
 }
@@ -52,8 +53,8 @@ impl Average {
     /// Writes it as CSV: x_mm, z_mm, spread_mm, least_mm, largest_mm, profiles.
     pub fn csv(&self) -> String {
         let mut text = "x_mm,z_mm,spread_mm,least_mm,largest_mm,profiles\n".to_owned();
-        for AveragePoint { at: [x, z], spread, range: [least, largest], count, .. } in &self.points {
-            text += &format!("{x},{z},{spread},{least},{largest},{count}\n");
+        for AveragePoint { at: [x, z], spread, range, count, .. } in &self.points {
+            text += &format!("{x},{z},{spread},{},{},{count}\n", range.low, range.high);
         }
         text
     }
@@ -78,7 +79,7 @@ impl Average {
 /// let from_circle = |x: f64| (x - 70.0).abs(); // X = 0 is the flange back
 /// let closer = |a: f64, b: f64| from_circle(a).total_cmp(&from_circle(b));
 /// let tread = average.points.iter().min_by(|a, b| closer(a.at[0], b.at[0])).expect("points");
-/// assert!((tread.at[1] - 0.1).abs() < 0.01 && (tread.range[1] - 0.1).abs() < 1e-3);
+/// assert!((tread.at[1] - 0.1).abs() < 0.01 && (tread.range.high - 0.1).abs() < 1e-3);
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn average(
@@ -166,14 +167,11 @@ fn averaged(curves: &[Curve], stations: &[Station]) -> Vec<AveragePoint> {
         let count = offsets.len() as f64;
         let mean = offsets.iter().sum::<f64>() / count;
         let squares: f64 = offsets.iter().map(|offset| (offset - mean).powi(2)).sum();
-        let [low, high] = [1.0, -1.0].map(|sign: f64| {
-            sign * offsets.iter().map(|offset| sign * (offset - mean)).fold(f64::INFINITY, f64::min)
-        });
         out.push(AveragePoint {
             at: [at.x + mean * normal[0], at.z + mean * normal[1]],
             normal,
             spread: (squares / (count - 1.0)).sqrt(),
-            range: [low, high],
+            range: Interval::around(offsets.iter().map(|offset| offset - mean)),
             count: offsets.len(),
         });
     }

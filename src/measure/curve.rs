@@ -1,5 +1,6 @@
 //! A profile as marks along it, with its crossings of lines and its extremes.
 
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::profile::{Mark, Profile, Station, trace};
 
@@ -50,9 +51,8 @@ impl Curve {
     }
 
     /// Returns the smallest and largest x \[mm\]; infinities of a curve without marks.
-    pub fn width(&self) -> [f64; 2] {
-        let x = self.marks.iter().map(|mark| mark.station.x);
-        [x.clone().fold(f64::INFINITY, f64::min), x.fold(f64::NEG_INFINITY, f64::max)]
+    pub fn extent(&self) -> Interval {
+        Interval::around(self.marks.iter().map(|mark| mark.station.x))
     }
 
     /// Returns where a·x + b·z = `level`, from left to right along the curve.

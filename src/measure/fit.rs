@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::curve::Curve;
+use crate::numerics::interval::Interval;
 use crate::profile::{Mark, Station, beside};
 
 /// Farthest distance \[mm\] of a place that belongs to a part of the nominal. It is more than a start is off, and less than the
@@ -20,8 +21,8 @@ const LEAST_HOLD: f64 = 0.03;
 const MOST_PASSES: usize = 200;
 /// Motion \[mm\] at which a fit is settled, a thousandth of the instrument's resolution.
 const SETTLED: f64 = 1e-6;
-/// Largest and smallest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
-const FITS: [f64; 2] = [0.005, 0.1];
+/// Smallest and largest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
+const FITS: Interval = Interval::new(0.005, 0.1);
 /// Rounds in which the places that fit are chosen anew, and the motion \[mm\] at which they are settled.
 const MOST_ROUNDS: usize = 50;
 const ROUND_SETTLED: f64 = 1e-4;
@@ -73,7 +74,7 @@ impl Fit<'_> {
     /// # Errors
     /// The errors of [`Fit::of_parts`].
     pub fn of_all(&self, of_parts: Fitted) -> Result<Fitted, String> {
-        let fits = (3.0 * of_parts.rms).clamp(FITS[0], FITS[1]);
+        let fits = (3.0 * of_parts.rms).clamp(FITS.low, FITS.high);
         let mut fitted = of_parts;
         for _ in 0..MOST_ROUNDS {
             let mut chosen = vec![false; self.measured.marks.len()];

@@ -2,10 +2,11 @@
 
 use super::curve::Curve;
 use crate::error::{self, Error};
+use crate::numerics::interval::Interval;
 use crate::profile::{Profile, Side, Station, last_groove};
 
 /// Places \[mm\] of a flange's tip right of x = 0 that show that x = 0 is at the flange back: flanges are 20 to 40 mm thick.
-const TIP_FROM_BACK: [f64; 2] = [5.0, 40.0];
+const TIP_FROM_BACK: Interval = Interval::new(5.0, 40.0);
 /// Height \[mm\] of the flange back over which its line is fitted, and the least one.
 const BACK_LENGTH: f64 = 10.0;
 const LEAST_BACK: f64 = 5.0;
@@ -76,7 +77,7 @@ pub(super) fn own_back(curve: &Curve) -> Result<Back, String> {
 
 /// Whether the tip of a flange may be so far from its back \[mm\].
 pub(super) fn is_from_back(tip: f64) -> bool {
-    tip > TIP_FROM_BACK[0] && tip < TIP_FROM_BACK[1]
+    tip > TIP_FROM_BACK.low && tip < TIP_FROM_BACK.high
 }
 
 /// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 use crate::profile::Side;
 
 /// Where quantities are measured; lengths in mm. Every option may be left out.
@@ -26,7 +27,7 @@ pub struct MeasureOptions {
     pub align: Option<Align>,
     /// Ranges of the nominal's x that are not worn, for the alignment "unworn".
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub unworn: Vec<[f64; 2]>,
+    pub unworn: Vec<Interval>,
 }
 
 /// One of the two rails.
@@ -122,7 +123,7 @@ impl MeasureOptions {
                 return Err(Error::new(name, value.to_string(), "a positive length in mm", "correct it"));
             }
         }
-        for [low, high] in &self.unworn {
+        for Interval { low, high } in &self.unworn {
             if !(low < high && low.is_finite() && high.is_finite()) {
                 let found = format!("{low} to {high}");
                 return Err(Error::new("unworn", found, "a range from less to more, in mm", "correct it"));

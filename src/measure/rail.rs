@@ -9,6 +9,7 @@ use super::found::Found;
 use super::nominal::{Nominal, running_head};
 use super::options::{GaugeFrom, MeasureOptions};
 use super::quantity::Quantity;
+use crate::numerics::interval::Interval;
 
 /// Half width \[mm\] of the crown whose radius is fitted, that of the MiniProf's own calculation.
 const CROWN: f64 = 10.0;
@@ -186,7 +187,7 @@ fn crown_radius(head: &Head, about: f64) -> Result<f64, String> {
         all.map(|(mark, weight)| (mark.station.x - about, mark.station.z - head.top.z, weight))
             .filter(|(x, ..)| x.abs() <= CROWN)
     };
-    let [from, to] = inside().fold([0.0f64; 2], |[low, high], (x, ..)| [low.min(x), high.max(x)]);
+    let Interval { low: from, high: to } = inside().map(|(x, ..)| x).fold(Interval::of(0.0), Interval::with);
     if from > -0.9 * CROWN || to < 0.9 * CROWN {
         return Err(format!(
             "the crown is measured from {from:.3} to {to:.3} mm about its top, not over {CROWN}"

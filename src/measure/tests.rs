@@ -263,8 +263,11 @@ fn known_wear_of_a_head_worn_at_both_sides_is_recovered_by_its_web_and_by_given_
     let exact =
         measure(&worn(&head, Side::Rail, by, Station::AXES, |_| true), Side::Rail, Some(&head), &none)?;
     let rail = worn(&head, Side::Rail, by, frame(-6.0, 2.0, -0.8), |_| true);
-    let ranges =
-        MeasureOptions { align: Some(Align::Unworn), unworn: vec![[5.0, 40.0]], ..MeasureOptions::default() };
+    let ranges = MeasureOptions {
+        align: Some(Align::Unworn),
+        unworn: vec![[5.0, 40.0].into()],
+        ..MeasureOptions::default()
+    };
     let measures = measure(&rail, Side::Rail, Some(&head), &ranges)?;
     for quantity in [Quantity::W1, Quantity::W2, Quantity::W3] {
         let [own, to] = [&measures, &exact].map(|measures| value(measures, quantity));
@@ -454,7 +457,10 @@ fn options_without_meaning_are_refused() -> Result<()> {
         "align"
     );
     assert_eq!(
-        complaint(MeasureOptions { unworn: vec![[0.0, 1.0]], ..MeasureOptions::default() }, Some(&wheel)),
+        complaint(
+            MeasureOptions { unworn: vec![[0.0, 1.0].into()], ..MeasureOptions::default() },
+            Some(&wheel)
+        ),
         "unworn"
     );
     assert_eq!(complaint(MeasureOptions::default(), Some(&wheel)), "");

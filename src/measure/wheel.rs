@@ -52,7 +52,7 @@ pub(super) fn tread(curve: &Curve, back: f64, options: &MeasureOptions) -> Resul
     if lowest.is_finite() {
         return Ok(lowest);
     }
-    let [from, to] = curve.width().map(|x| x - back);
+    let [from, to] = curve.extent().map(|x| x - back).ends();
     Err(format!("no tread at X = {} mm: the points go from X = {from:.3} to {to:.3}", options.tread_at))
 }
 
@@ -96,7 +96,7 @@ fn qr(curve: &Curve, tip: Place, thickness: f64, back: f64, options: &MeasureOpt
 
 /// Returns the largest rise of Y towards the field side \[mm\] on the way from the tip.
 fn hollow(curve: &Curve, tip: Place, back: f64, options: &MeasureOptions) -> Result<f64, String> {
-    let end = curve.width()[1] - back;
+    let end = curve.extent().high - back;
     if end < options.tread_at + LEAST_TREAD {
         let least = options.tread_at + LEAST_TREAD;
         return Err(format!("the tread is measured to X = {end:.3} mm only, and hollow wear needs {least}"));

@@ -85,7 +85,7 @@ impl BodyShell {
         let (middle, deepest) = (lofted.along(), -lofted.laid().radius());
         let mut all = Self { points: Vec::new(), faces: Vec::new() };
         for strip in &lofted.loft().strips {
-            let [from, to] = strip.reach();
+            let [from, to] = strip.reach().ends();
             let [from, to] = [from.max(middle - half_length), to.min(middle + half_length)];
             if from >= to {
                 continue;

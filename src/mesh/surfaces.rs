@@ -130,7 +130,8 @@ impl Surface {
         let steps = ((to - from) / CELL).ceil().max(1.0);
         let mut places: Vec<f64> =
             (0..=steps as usize).map(|k| from + (to - from) * k as f64 / steps).chain([along]).collect();
-        let ends = strips.iter().flat_map(Strip::reach).filter(|end| (from..=to).contains(end));
+        let ends =
+            strips.iter().flat_map(|strip| strip.reach().ends()).filter(|end| (from..=to).contains(end));
         places.extend(ends);
         places.sort_by(f64::total_cmp);
         places.dedup();

@@ -74,13 +74,19 @@ impl Interval {
     /// Gives the lower and the upper half.
     #[inline(always)]
     pub fn halves(self) -> [Self; 2] {
-        [Self::new(self.low, self.middle()), Self::new(self.middle(), self.high)]
+        self.split(self.middle())
     }
 
     /// Gives the largest distance from zero in the interval.
     #[inline(always)]
     pub fn magnitude(self) -> f64 {
         self.low.abs().max(self.high.abs())
+    }
+
+    /// Gives the number at a share of the width: the lower end at 0, the upper one at 1 but for rounding.
+    #[inline(always)]
+    pub fn at(self, share: f64) -> f64 {
+        self.low + (self.high - self.low) * share
     }
 
     /// Says whether the interval holds a number, the ends included.
@@ -135,6 +141,12 @@ impl Interval {
     #[inline(always)]
     pub fn common(self, other: Self) -> Option<Self> {
         Some(self.cut(other)).filter(|cut| cut.low <= cut.high)
+    }
+
+    /// Gives what is below and what is above a number of the interval.
+    #[inline(always)]
+    pub fn split(self, at: f64) -> [Self; 2] {
+        [Self::new(self.low, at), Self::new(at, self.high)]
     }
 
     /// Gives the interval with both ends moved outwards by `margin`.

@@ -57,7 +57,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }
     let selection = Selection { within, apart: ONE_CONTACT };
-    let march = March { system, position, selection, reach: lists.reach, pitch };
+    let march = March { system, position, selection, reach: lists.reach.into(), pitch };
     let loaded = loaded(scene, &profiles)?;
     Ok(MarchCase { march, profiles, loaded, warnings: lists.warnings, echo: echo(scene, "march") })
 }
@@ -121,7 +121,7 @@ impl Sides<'_> {
         }
         let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
         lists.take(&loft, &rail_key);
-        let first = loft.strips.first().map_or(0.0, |strip| strip.reach()[0]);
+        let first = loft.strips.first().map_or(0.0, |strip| strip.reach().low);
         let section = section(&loft, loft.widest(first).unwrap_or(0), first)?;
         let varying = Some(LoftedBody::Rail(Arc::new(loft)));
         let track = moved(Track::between_origins(spacing)?)?;
@@ -156,7 +156,7 @@ impl Lists {
     }
 
     fn take(&mut self, loft: &Loft, place: &str) {
-        let [from, to] = loft.reach();
+        let [from, to] = loft.reach().ends();
         self.reach = [self.reach[0].max(from), self.reach[1].min(to)];
         self.warnings.extend(loft.warnings.iter().map(|warning| format!("{place}: {warning}")));
     }

@@ -79,7 +79,7 @@ fn varying(
     let Some((list, along)) = list_of(data, Side::Rail).zip(scene.along()?) else { return Ok(None) };
     let loft = loft(data, &folder.join(list)).map_err(|error| error.within(place))?;
     let Some(strip) = loft.widest(along) else {
-        let [from, to] = loft.reach();
+        let [from, to] = loft.reach().ends();
         let expected = format!("a place from {from} to {to} mm, where the slices join to a surface");
         let place = if scene.wheelset.is_some() { "wheelset: along" } else { "contact: along" };
         return Err(Error::new(place, format!("{along:?} mm"), expected, "choose another place"));

@@ -5,6 +5,7 @@ use super::candidates::{Foot, Search};
 use super::element::{ArcElement, Element, ElementCurve, SINE_ROUNDING, between};
 use super::locus::Attitude;
 use crate::numerics::cosine;
+use crate::numerics::interval::Interval;
 use crate::profile::Station;
 
 /// Looks for contact of two elements; returns whether there is a closed form.
@@ -33,7 +34,7 @@ struct ArcPair<'s, 'a> {
 /// The outline of an arc or fan.
 struct Seen {
     /// Sines of the tangents at both ends, ascending.
-    sine: [f64; 2],
+    sine: Interval,
     /// Abscissa of the centre without yaw \[mm\].
     centre: f64,
 }
@@ -45,7 +46,7 @@ fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen
     let mut sine = element.range;
     if attitude.sin_yaw != 0.0 {
         let steepest = steepest_seen(attitude, arc)?;
-        if sine[0] >= steepest || sine[1] <= -steepest {
+        if sine.low >= steepest || sine.high <= -steepest {
             return None;
         }
         sine = sine.map(|sin| attitude.outline_sine(sin.clamp(-steepest, steepest)));
@@ -53,7 +54,7 @@ fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen
         sine = sine.map(|sin| attitude.rolled_sine(sin));
     }
     let centre = attitude.offset + arc.centre[0] * attitude.cos_roll + arc.centre[1] * attitude.sin_roll;
-    (sine[0] <= sine[1]).then_some(Seen { sine, centre })
+    (sine.low <= sine.high).then_some(Seen { sine, centre })
 }
 
 /// Returns the sine of the steepest profile tangent of an arc with an outline: cosψ; with the hollow side
@@ -71,7 +72,7 @@ impl ArcPair<'_, '_> {
     /// the sine of the tangent.
     fn arc_on_arc(&mut self, (arc, wheel): (&ArcElement, &Element), (below, rail): (&ArcElement, &Element)) {
         let Some(seen) = seen(self.search.attitude, arc, wheel) else { return };
-        let [low, high] = [seen.sine[0].max(rail.range[0]), seen.sine[1].min(rail.range[1])];
+        let Interval { low, high } = seen.sine.cut(rail.range);
         let rounding = self.search.rounding(arc.radius.abs() + below.radius.abs());
         let difference = below.radius - arc.radius;
         let slack = if difference == 0.0 { 0.0 } else { rounding / difference.abs() } + SINE_ROUNDING;
@@ -98,13 +99,13 @@ impl ArcPair<'_, '_> {
     /// Solves a line of the wheel, whose outline is straight, over an arc or fan of the rail.
     fn line_on_arc(&mut self, ends: &[Station; 2], (below, rail): (&ArcElement, &Element)) {
         let outline = ends.map(|end| self.search.attitude.outline(&end));
-        let (Station { sin, cos, .. }, sine) = (outline[0], rail.range);
-        if !(cos > 0.0 && sin >= sine[0] - SINE_ROUNDING && sin <= sine[1] + SINE_ROUNDING) {
+        let Station { sin, cos, .. } = outline[0];
+        if !(cos > 0.0 && rail.range.grown(SINE_ROUNDING).contains(sin)) {
             return;
         }
         let foot = below.at(sin, cos);
         let rounding = self.search.rounding(below.radius.abs());
-        if let Some(point) = between(ends, &outline.map(|p| p.x), foot.x, rounding) {
+        if let Some(point) = between(ends, abscissae(&outline), foot.x, rounding) {
             self.take(on_line(point), Foot { station: foot, radius: below.radius, parameter: sin });
         }
     }
@@ -113,13 +114,13 @@ impl ArcPair<'_, '_> {
     fn arc_on_line(&mut self, (arc, wheel): (&ArcElement, &Element), rail: &[Station; 2]) {
         let Station { sin, cos, .. } = rail[0];
         let Some(Seen { sine, .. }) = seen(self.search.attitude, arc, wheel) else { return };
-        if sin < sine[0] - SINE_ROUNDING || sin > sine[1] + SINE_ROUNDING {
+        if !sine.grown(SINE_ROUNDING).contains(sin) {
             return;
         }
         let point = wheel_point(self.search.attitude, arc, sin, cos);
         let x = self.search.attitude.outline(&point).x;
         let rounding = self.search.rounding(arc.radius.abs());
-        if let Some(foot) = between(rail, &rail.map(|p| p.x), x, rounding) {
+        if let Some(foot) = between(rail, abscissae(rail), x, rounding) {
             let above = Foot { station: point, radius: arc.radius, parameter: point.sin };
             self.take(above, on_line(foot));
         }
@@ -132,10 +133,9 @@ impl ArcPair<'_, '_> {
         if turn.is_nan() || turn.abs() > SINE_ROUNDING {
             return;
         }
-        let (low, high) = (outline[0].x.max(rail[0].x), outline[1].x.min(rail[1].x));
-        let x = low + (high - low) / 2.0;
-        let point = between(ends, &outline.map(|p| p.x), x, 0.0);
-        let foot = between(rail, &rail.map(|p| p.x), x, 0.0);
+        let (above, below) = (abscissae(&outline), abscissae(rail));
+        let x = above.cut(below).at(0.5);
+        let (point, foot) = (between(ends, above, x, 0.0), between(rail, below, x, 0.0));
         if let (Some(point), Some(foot)) = (point, foot) {
             self.take(on_line(point), on_line(foot));
         }
@@ -151,6 +151,11 @@ impl ArcPair<'_, '_> {
     fn take(&mut self, wheel: Foot, rail: Foot) {
         self.search.offer(self.elements, &wheel, &rail);
     }
+}
+
+/// Returns the abscissae between the ends of a line \[mm\].
+fn abscissae(ends: &[Station; 2]) -> Interval {
+    ends.map(|end| end.x).into()
 }
 
 /// Returns the foot for a point of a line.

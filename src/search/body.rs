@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::bounds::{Bounds, Reach};
 use super::element::{ArcElement, Element, ElementCurve, Stretch};
+use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::bernstein;
 use crate::profile::{Branch, BranchPoint, BranchShape, ONE_JOINT, PolynomialBranch, Section, Side, Station};
 
@@ -38,7 +39,7 @@ pub(super) struct SearchBody {
     /// Rounding of a bound \[mm\].
     pub rounding: f64,
     /// Bounds of x and of z of the whole surface \[mm\].
-    pub extent: [[f64; 2]; 2],
+    pub extent: [Interval; 2],
 }
 
 /// A node of the tree: a range of elements.
@@ -90,7 +91,7 @@ impl SearchBody {
 
     /// Returns the index of the element that holds an abscissa, or is next to it.
     pub fn element_at(&self, x: f64) -> usize {
-        let index = self.elements.partition_point(|element| element.bounds.x[1] < x);
+        let index = self.elements.partition_point(|element| element.bounds.x.high < x);
         index.min(self.elements.len() - 1)
     }
 }
@@ -118,17 +119,17 @@ impl TreeBuilder {
         let mut last: Option<Station> = None;
         for piece in &section.pieces {
             let branch = &section.branches[piece.branch];
-            let [start, end] = piece.xi.map(|x| branch.station(x));
+            let xi = Interval::from(piece.xi);
+            let [start, end] = xi.ends().map(|x| branch.station(x));
             match last {
                 None => self.fan(&start, material_left, start.angle()),
                 Some(before) => self.corner(&before, &start, joint),
             }
-            let [from, to] = piece.xi;
-            let parts = ((to - from) / self.longest).ceil().max(1.0);
-            let cut = |k: f64| if k < parts { from + (to - from) * (k / parts) } else { to };
+            let parts = (xi.width() / self.longest).ceil().max(1.0);
+            let cut = |k: f64| if k < parts { xi.at(k / parts) } else { xi.high };
             for k in 0..parts as u32 {
-                let xi = [cut(f64::from(k)), cut(f64::from(k) + 1.0)];
-                self.smooth(branch, xi, xi.map(|x| branch.station(x)));
+                let part = Interval::new(cut(f64::from(k)), cut(f64::from(k) + 1.0));
+                self.smooth(branch, part, part.ends().map(|x| branch.station(x)));
             }
             last = Some(end);
         }
@@ -159,32 +160,32 @@ impl TreeBuilder {
         } else if turn <= -PI {
             turn += TAU;
         }
-        let [low, high] = match self.side {
-            Side::Wheel if turn > LEAST_KINK => [from, from + turn],
-            Side::Rail if turn < -LEAST_KINK => [from + turn, from],
+        let angles = match self.side {
+            Side::Wheel if turn > LEAST_KINK => Interval::new(from, from + turn),
+            Side::Rail if turn < -LEAST_KINK => Interval::new(from + turn, from),
             _ => return,
         };
-        let (low, high) = (low.max(-FRAC_PI_2), high.min(FRAC_PI_2));
-        if low >= high {
+        let angles = angles.cut(Interval::new(-FRAC_PI_2, FRAC_PI_2));
+        if angles.low >= angles.high {
             return;
         }
-        let ends = [low, high].map(|angle| Station { sin: angle.sin(), cos: angle.cos().max(0.0), ..*point });
+        let ends =
+            angles.ends().map(|angle| Station { sin: angle.sin(), cos: angle.cos().max(0.0), ..*point });
         let at = [point.x, point.z];
         let curvature = match self.side {
             Side::Wheel => f64::INFINITY,
             Side::Rail => f64::NEG_INFINITY,
         };
         let shape = ElementCurve::Arc(ArcElement::fan(point, self.side));
-        let sines = ends.map(|end| end.sin);
-        self.push(shape, sines, ends, &[at], [at; 2], [sines, [curvature; 2]]);
+        let sines = sines(&ends);
+        self.push(shape, sines, ends, &[at], [at; 2], [sines, Interval::of(curvature)]);
     }
 
-    fn smooth(&mut self, branch: &Branch, xi: [f64; 2], mut ends: [Station; 2]) {
+    fn smooth(&mut self, branch: &Branch, xi: Interval, mut ends: [Station; 2]) {
         let outer = ends.map(|end| [end.x, end.z]);
-        match (&branch.shape, xi.map(|xi| branch.point(xi).0)) {
+        match (&branch.shape, xi.ends().map(|xi| branch.point(xi).0)) {
             (BranchShape::Arc(arc), _) if arc.curvature == 0.0 => {
-                let sines = ends.map(|end| end.sin);
-                self.push(ElementCurve::Line, xi, ends, &outer, outer, [sines, [0.0; 2]]);
+                self.push(ElementCurve::Line, xi, ends, &outer, outer, [sines(&ends), Interval::of(0.0)]);
             }
             (BranchShape::Arc(arc), _) => {
                 let hull = tangents(&ends, arc.radius);
@@ -192,21 +193,21 @@ impl TreeBuilder {
                     ends.swap(0, 1);
                 }
                 let shape = ElementCurve::Arc(ArcElement::of(arc));
-                let sines = ends.map(|end| end.sin);
-                self.push(shape, sines, ends, &hull, outer, [sines, [arc.curvature; 2]]);
+                let sines = sines(&ends);
+                self.push(shape, sines, ends, &hull, outer, [sines, Interval::of(arc.curvature)]);
             }
             (
                 BranchShape::Polynomial(polynomial),
                 [BranchPoint::Polynomial { t: [a], .. }, BranchPoint::Polynomial { t: [b], .. }],
             ) => {
-                self.polynomial(polynomial, [a, b]);
+                self.polynomial(polynomial, Interval::new(a, b));
             }
             // Both ends of a polynomial's piece are points of a polynomial, so this does not occur.
             (BranchShape::Polynomial(_), _) => {}
         }
     }
 
-    fn polynomial(&mut self, polynomial: &PolynomialBranch, range: [f64; 2]) {
+    fn polynomial(&mut self, polynomial: &PolynomialBranch, range: Interval) {
         let first = self.coefficients.len();
         let count = polynomial.xi.len().max(polynomial.zeta.len());
         let get = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
@@ -215,13 +216,11 @@ impl TreeBuilder {
     }
 
     /// Cuts a polynomial until its bounds are narrow enough to be useful, and appends the parts.
-    fn cut(&mut self, first: usize, count: usize, [a, b]: [f64; 2], depth: u32) {
+    fn cut(&mut self, first: usize, count: usize, range: Interval, depth: u32) {
         let own = &self.coefficients[first..first + count];
-        let reach = Reach::of(own, [a, b]);
-        let middle = a + (b - a) / 2.0;
-        if depth > 0 && reach.is_wide(b - a) && a < middle && middle < b {
-            self.cut(first, count, [a, middle], depth - 1);
-            return self.cut(first, count, [middle, b], depth - 1);
+        let (reach, middle, [a, b]) = (Reach::of(own, range), range.at(0.5), range.ends());
+        if depth > 0 && reach.is_wide(range.width()) && a < middle && middle < b {
+            return range.split(middle).into_iter().for_each(|half| self.cut(first, count, half, depth - 1));
         }
         let [x, z] = [0, 1].map(|axis| {
             let c: Vec<f64> = own.iter().map(|c| c[axis]).collect();
@@ -232,22 +231,22 @@ impl TreeBuilder {
         let shape = ElementCurve::Stretch(stretch);
         let ends = [a, b].map(|t| stretch.place(&self.coefficients, t).station);
         let outer = ends.map(|end| [end.x, end.z]);
-        self.push(shape, [a, b], ends, &hull, outer, [reach.sine, reach.curvature]);
+        self.push(shape, range, ends, &hull, outer, [reach.sine, reach.curvature]);
     }
 
     fn push(
         &mut self,
         shape: ElementCurve,
-        range: [f64; 2],
+        range: Interval,
         ends: [Station; 2],
         hull: &[[f64; 2]],
         outer: [[f64; 2]; 2],
-        turns: [[f64; 2]; 2],
+        turns: [Interval; 2],
     ) {
         let bounds = Bounds::of_hull(hull, outer, turns, self.side, self.rounding);
         self.firsts.push(self.hull.len());
         self.hull.extend_from_slice(hull);
-        let middle = shape.place(&ends[0], &self.coefficients, range[0] + (range[1] - range[0]) / 2.0);
+        let middle = shape.place(&ends[0], &self.coefficients, range.at(0.5));
         self.elements.push(Element { shape, range, ends, middle, bounds });
     }
 
@@ -255,7 +254,7 @@ impl TreeBuilder {
     fn tree(&self, from: usize, to: usize, nodes: &mut Vec<TreeNode>) -> u32 {
         let own = nodes.len();
         let bounds = if to - from == 1 { self.elements[from].bounds } else { self.joined(from, to) };
-        let size = (bounds.x[1] - bounds.x[0]).max(bounds.z[1] - bounds.z[0]);
+        let size = bounds.x.width().max(bounds.z.width());
         nodes.push(TreeNode { bounds, right: 0, element: from as u32, size });
         if to - from > 1 {
             let middle = self.middle(from, to);
@@ -269,7 +268,7 @@ impl TreeBuilder {
     /// quarter of the elements on either side.
     fn middle(&self, from: usize, to: usize) -> usize {
         let own = &self.elements[from..to];
-        let length = |e: &Element| (e.bounds.x[1] - e.bounds.x[0]) + (e.bounds.z[1] - e.bounds.z[0]);
+        let length = |e: &Element| e.bounds.x.width() + e.bounds.z.width();
         let half = 0.5 * own.iter().map(length).sum::<f64>();
         let mut walked = 0.0;
         let cut = own.iter().position(|element| {
@@ -284,17 +283,19 @@ impl TreeBuilder {
     /// Returns the bounds of several elements.
     fn joined(&self, from: usize, to: usize) -> Bounds {
         let own = &self.elements[from..to];
-        let fold = |of: fn(&Element) -> [f64; 2]| {
-            let around = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-            own.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], around)
-        };
-        let (sine, curvature) = (fold(|e| e.bounds.sine), fold(|e| e.bounds.curvature));
-        let x = fold(|e| e.bounds.x);
+        let hull = |of: fn(&Element) -> Interval| own.iter().map(of).fold(Interval::NONE, Interval::hull);
+        let (sine, curvature) = (hull(|e| e.bounds.sine), hull(|e| e.bounds.curvature));
+        let x = hull(|e| e.bounds.x);
         let hull = &self.hull[self.firsts[from]..self.firsts[to]];
         let height = |points: Option<&[f64; 2]>| points.map_or(0.0, |p| p[1]);
-        let ends = [[x[0], height(hull.first())], [x[1], height(hull.last())]];
+        let ends = [[x.low, height(hull.first())], [x.high, height(hull.last())]];
         Bounds::of_hull(hull, ends, [sine, curvature], self.side, self.rounding)
     }
+}
+
+/// Returns the sines of the tangents at both ends.
+fn sines(ends: &[Station; 2]) -> Interval {
+    ends.map(|end| end.sin).into()
 }
 
 /// Returns both ends of an arc and the corners of its tangents, in order of travel.
@@ -331,7 +332,7 @@ mod tests {
         let body = SearchBody::new(&Section::own_axes(&profile, Side::Wheel), profile.extent(), Side::Wheel)
             .expect("a wheel");
         let fans: Vec<f64> =
-            body.elements.iter().map(|e| e.bounds.x).filter(|x| x[0] == x[1]).map(|x| x[0]).collect();
+            body.elements.iter().map(|e| e.bounds.x).filter(|x| x.low == x.high).map(|x| x.low).collect();
         // The flange back, the kinks to 1:15 and to the chamfer, and the outer face; apart from these, only
         // kinks of the drawing's rounding.
         for x in [30.0, 60.0, 65.0] {
@@ -347,7 +348,7 @@ mod tests {
             .expect("a wheel");
         assert!(body.elements.len() < 200, "{}", body.elements.len());
         for pair in body.elements.windows(2) {
-            assert!((pair[0].bounds.x[1] - pair[1].bounds.x[0]).abs() < 2e-3);
+            assert!((pair[0].bounds.x.high - pair[1].bounds.x.low).abs() < 2e-3);
         }
         Ok(())
     }
@@ -373,20 +374,15 @@ mod tests {
                 };
                 for element in &body.elements[node.element as usize..next] {
                     for k in 0..=20 {
-                        let p =
-                            element.range[0] + (element.range[1] - element.range[0]) * f64::from(k) / 20.0;
+                        let p = element.range.at(f64::from(k) / 20.0);
                         let Station { x, z, sin, .. } = element.place(&body.coefficients, p).station;
                         let b = &node.bounds;
                         let level = z * b.chord[0] - x * b.chord[1];
                         let over = if side == Side::Wheel { level - b.level } else { b.level - level };
                         assert!(over >= 0.0, "{name} {index}: {over:e}");
                         let slack = 1e-13;
-                        assert!(x >= b.x[0] - slack && x <= b.x[1] + slack, "{name} {index}");
-                        assert!(
-                            sin >= b.sine[0] - slack && sin <= b.sine[1] + slack,
-                            "{name} {index}: {sin} {:?}",
-                            b.sine
-                        );
+                        assert!(b.x.grown(slack).contains(x), "{name} {index}");
+                        assert!(b.sine.grown(slack).contains(sin), "{name} {index}: {sin} {:?}", b.sine);
                         checked += 1;
                     }
                 }

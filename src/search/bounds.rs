@@ -2,6 +2,7 @@
 //! the square of the part's length.
 
 use crate::numerics::cosine;
+use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::{bernstein, convolution, derivative, range};
 use crate::profile::{Side, Station};
 
@@ -9,17 +10,17 @@ use crate::profile::{Side, Station};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
     /// Least and largest abscissa \[mm\].
-    pub x: [f64; 2],
+    pub x: Interval,
     /// Least and largest height \[mm\].
-    pub z: [f64; 2],
+    pub z: Interval,
     /// Least and largest sine of the tangent angle.
-    pub sine: [f64; 2],
+    pub sine: Interval,
     /// Cosines of the tangent angles of `sine`.
     pub cosine: [f64; 2],
     /// Tangents of the tangent angles of `sine`, ±∞ for a vertical.
-    pub tangent: [f64; 2],
+    pub tangent: Interval,
     /// Least and largest curvature \[1/mm\], positive with the hollow side up.
-    pub curvature: [f64; 2],
+    pub curvature: Interval,
     /// Direction of the chord: \[cos, sin\].
     pub chord: [f64; 2],
     /// Level of the line along the chord that the other body would meet first \[mm\]: z cos − x sin of all
@@ -44,9 +45,9 @@ pub(super) struct Reach {
     /// Largest length of the second derivative.
     pub bend: f64,
     /// Least and largest sine of the tangent angle.
-    pub sine: [f64; 2],
+    pub sine: Interval,
     /// Least and largest curvature \[1/mm\].
-    pub curvature: [f64; 2],
+    pub curvature: Interval,
     /// Largest derivative of the curvature.
     pub change: f64,
 }
@@ -58,26 +59,21 @@ fn level([cos, sin]: [f64; 2], [x, z]: [f64; 2]) -> f64 {
     z * cos - x * sin
 }
 
-/// Returns the smallest interval around two intervals.
-fn around(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0].min(b[0]), a[1].max(b[1])]
-}
-
 impl Bounds {
     fn new(
-        [x, z]: [[f64; 2]; 2],
-        [sine, curvature]: [[f64; 2]; 2],
+        [x, z]: [Interval; 2],
+        [sine, curvature]: [Interval; 2],
         (chord, level): ([f64; 2], f64),
         side: Side,
     ) -> Self {
         let sine = sine.map(|sin| sin.clamp(-1.0, 1.0));
-        let cosine = sine.map(cosine);
+        let cosine = sine.ends().map(cosine);
         let line = if chord[0] * STEEPEST_SLOPE >= 1.0 {
             [level / chord[0], chord[1] / chord[0]]
         } else {
-            [if side == Side::Wheel { z[0] } else { z[1] }, 0.0]
+            [if side == Side::Wheel { z.low } else { z.high }, 0.0]
         };
-        let tangent = [sine[0] / cosine[0], sine[1] / cosine[1]];
+        let tangent = Interval::new(sine.low / cosine[0], sine.high / cosine[1]);
         Self { x, z, sine, cosine, tangent, curvature, chord, level, line }
     }
 
@@ -89,7 +85,7 @@ impl Bounds {
     pub fn of_hull(
         hull: &[[f64; 2]],
         ends: [[f64; 2]; 2],
-        [sine, curvature]: [[f64; 2]; 2],
+        [sine, curvature]: [Interval; 2],
         side: Side,
         rounding: f64,
     ) -> Self {
@@ -98,21 +94,14 @@ impl Bounds {
         let chord = if length > 0.0 {
             [run / length, rise / length]
         } else {
-            let angle = (sine[0].clamp(-1.0, 1.0).asin() + sine[1].clamp(-1.0, 1.0).asin()) / 2.0;
+            let angle = sine.map(|sin| sin.clamp(-1.0, 1.0).asin()).middle();
             [angle.cos(), angle.sin()]
         };
-        let (mut z, mut levels) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
-        for point in hull {
-            let here = level(chord, *point);
-            z = around(z, [point[1]; 2]);
-            levels = around(levels, [here; 2]);
-        }
-        let level = match side {
-            Side::Wheel => levels[0] - rounding,
-            Side::Rail => levels[1] + rounding,
-        };
-        let x = [ends[0][0], ends[1][0]];
-        Self::new([x, [z[0] - rounding, z[1] + rounding]], [sine, curvature], (chord, level), side)
+        let z = Interval::around(hull.iter().map(|point| point[1]));
+        let levels = Interval::around(hull.iter().map(|point| level(chord, *point))).grown(rounding);
+        let level = if side == Side::Wheel { levels.low } else { levels.high };
+        let x = Interval::new(ends[0][0], ends[1][0]);
+        Self::new([x, z.grown(rounding)], [sine, curvature], (chord, level), side)
     }
 
     /// Returns the bounds of an arc or fan between two points with ascending sines of their tangents, from a
@@ -120,7 +109,7 @@ impl Bounds {
     pub fn of_arc(
         ends: &[Station; 2],
         middle: &Station,
-        curvature: [f64; 2],
+        curvature: Interval,
         side: Side,
         rounding: f64,
     ) -> Self {
@@ -130,22 +119,21 @@ impl Bounds {
         // A chord of a turn t is off the arc by less than t/4 of its length, for turns up to half a circle.
         let off = 0.5 * length * turn + rounding;
         let chord = [middle.cos, middle.sin];
-        let levels = ends.map(|end| level(chord, [end.x, end.z]));
-        let level = match side {
-            Side::Wheel => levels[0].min(levels[1]) - off,
-            Side::Rail => levels[0].max(levels[1]) + off,
-        };
-        let (x, z) = (around([a.x; 2], [b.x; 2]), around([a.z; 2], [b.z; 2]));
-        Self::new([x, [z[0] - off, z[1] + off]], [[a.sin, b.sin], curvature], (chord, level), side)
+        let [first, last] = ends.map(|end| level(chord, [end.x, end.z]));
+        let levels = Interval::of(first).with(last).grown(off);
+        let level = if side == Side::Wheel { levels.low } else { levels.high };
+        let (x, z) = (Interval::of(a.x).with(b.x), Interval::of(a.z).with(b.z).grown(off));
+        Self::new([x, z], [Interval::new(a.sin, b.sin), curvature], (chord, level), side)
     }
 }
 
 impl Reach {
-    /// Returns the bounds over \[a, b\] of the parameter, for a curve with coefficients \[x, z\].
+    /// Returns the bounds over a range of the parameter, for a curve with coefficients \[x, z\].
     ///
     /// Method: Bernstein coefficients; the tangents lie in the cone of the control vectors. Unbounded where
     /// the curve may stand still.
-    pub fn of(coefficients: &[[f64; 2]], [a, b]: [f64; 2]) -> Self {
+    pub fn of(coefficients: &[[f64; 2]], parameters: Interval) -> Self {
+        let [a, b] = parameters.ends();
         let [x, z] = [0, 1].map(|axis| coefficients.iter().map(|c| c[axis]).collect::<Vec<f64>>());
         let (dx, dz) = (derived(&x), derived(&z));
         let (hx, hz) = (derived(&dx), derived(&dz));
@@ -158,11 +146,11 @@ impl Reach {
         let over = |v: f64, up: bool| if (v > 0.0) == up { v * cubes[0] } else { v * cubes[1] };
         let bounded = speed[0] > 0.0;
         let curvature = if bounded {
-            [over(turning[0], false), over(turning[1], true)]
+            Interval::new(over(turning[0], false), over(turning[1], true))
         } else {
-            [f64::NEG_INFINITY, f64::INFINITY]
+            Interval::ALL
         };
-        let steepest = curvature[0].abs().max(curvature[1].abs());
+        let steepest = curvature.magnitude();
         let change = if bounded {
             largest(&derived(&cross)) * cubes[0]
                 + 1.5 * steepest * largest(&derived(&square)) / speed[0].powi(2)
@@ -182,9 +170,9 @@ impl Reach {
     /// Returns whether the bounds are too wide to decide most pairs at once: see [`WIDEST_TURN`],
     /// [`VARIATION`].
     pub fn is_wide(&self, width: f64) -> bool {
-        let most = self.curvature[0].abs().max(self.curvature[1].abs());
+        let most = self.curvature.magnitude();
         let turn = most * width * self.run.hypot(self.rise);
-        let varies = self.curvature[1] - self.curvature[0] > VARIATION * most;
+        let varies = self.curvature.width() > VARIATION * most;
         turn.is_nan() || turn > WIDEST_TURN || (varies && turn > LEAST_TURN)
     }
 
@@ -194,16 +182,14 @@ impl Reach {
     /// Method: Taylor's theorem about the point, with the bounds of the whole stretch.
     pub fn around(&self, point: &Station, curvature: f64, half: f64, side: Side, rounding: f64) -> Bounds {
         let (run, rise) = (half * self.run, half * self.rise);
-        let change = half * self.change;
-        let curvature =
-            [(curvature - change).max(self.curvature[0]), (curvature + change).min(self.curvature[1])];
-        let turn = curvature[0].abs().max(curvature[1].abs()) * run;
+        let curvature = Interval::of(curvature).grown(half * self.change).cut(self.curvature);
+        let turn = curvature.magnitude() * run;
         let off = 0.5 * half * half * self.bend + rounding;
         let chord = [point.cos, point.sin];
         let here = level(chord, [point.x, point.z]);
-        let x = [point.x - run, point.x + run];
-        let z = [point.z - rise - rounding, point.z + rise + rounding];
-        let sine = [(point.sin - turn).max(self.sine[0]), (point.sin + turn).min(self.sine[1])];
+        let x = Interval::of(point.x).grown(run);
+        let z = Interval::of(point.z).grown(rise).grown(rounding);
+        let sine = Interval::of(point.sin).grown(turn).cut(self.sine);
         let level = if side == Side::Wheel { here - off } else { here + off };
         Bounds::new([x, z], [sine, curvature], (chord, level), side)
     }
@@ -222,8 +208,8 @@ const LEAST_TURN: f64 = 0.05;
 
 /// Returns the range of the sines of the directions of some vectors; \[−1, 1\] if one does not point to
 /// larger x.
-fn cone(x: &[f64], z: &[f64]) -> [f64; 2] {
-    let mut sines = [1.0f64, -1.0f64];
+fn cone(x: &[f64], z: &[f64]) -> Interval {
+    let (all, mut sines) = (Interval::new(-1.0, 1.0), Interval::new(1.0, -1.0));
     for k in 0..x.len().max(z.len()) {
         let get = |c: &[f64]| c.get(k).or(c.last()).copied().unwrap_or(0.0);
         let (run, rise) = (get(x), get(z));
@@ -232,11 +218,11 @@ fn cone(x: &[f64], z: &[f64]) -> [f64; 2] {
             continue;
         }
         if run < 0.0 {
-            return [-1.0, 1.0];
+            return all;
         }
-        sines = around(sines, [rise / length; 2]);
+        sines = sines.with(rise / length);
     }
-    if sines[0] <= sines[1] { sines } else { [-1.0, 1.0] }
+    if sines.is_empty() { all } else { sines }
 }
 
 /// Returns the derivative's coefficients; a single zero for a constant.

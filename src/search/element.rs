@@ -4,6 +4,7 @@
 
 use super::bounds::{Bounds, Reach};
 use crate::numerics::cosine;
+use crate::numerics::interval::Interval;
 use crate::profile::{ArcBranch, Side, Station};
 
 /// Amount by which a sine may exceed the ends of an element: a root on a joint may come out this far beyond
@@ -16,7 +17,7 @@ pub(super) struct Element {
     /// Kind of curve, with its data.
     pub shape: ElementCurve,
     /// Range of the parameter, ascending: sinφ of an arc or fan, x \[mm\] of a line, t of a stretch.
-    pub range: [f64; 2],
+    pub range: Interval,
     /// The points at the ends of `range`.
     pub ends: [Station; 2],
     /// The point in the middle of `range`.
@@ -145,11 +146,11 @@ impl Element {
     /// Accuracy: rounding. Cost for a stretch: three or four Newton steps, safeguarded by a bracket.
     pub fn parameter_at(&self, coefficients: &[[f64; 2]], x: f64) -> f64 {
         match &self.shape {
-            ElementCurve::Arc(arc) => arc.sine_at(x).clamp(self.range[0], self.range[1]),
+            ElementCurve::Arc(arc) => arc.sine_at(x).clamp(self.range.low, self.range.high),
             ElementCurve::Line => x,
             ElementCurve::Stretch(_) => {
-                let ends = self.ends.map(|end| end.x);
-                rising_root(self.range, ends, x, |p| {
+                let values = self.ends.map(|end| end.x).into();
+                rising_root(self.range.ends(), values, x, |p| {
                     let place = self.place(coefficients, p);
                     [place.station.x, place.run]
                 })
@@ -164,9 +165,9 @@ impl Element {
 ///
 /// Accuracy: rounding. Cost: three or four Newton steps on a function that is nearly straight; a bracket is
 /// kept.
-pub(super) fn rising_root(ends: [f64; 2], values: [f64; 2], value: f64, f: impl Fn(f64) -> [f64; 2]) -> f64 {
+pub(super) fn rising_root(ends: [f64; 2], values: Interval, value: f64, f: impl Fn(f64) -> [f64; 2]) -> f64 {
     let [mut low, mut high] = ends;
-    let share = (value - values[0]) / (values[1] - values[0]);
+    let share = (value - values.low) / values.width();
     if share.is_nan() || share <= 0.0 {
         return low;
     }
@@ -218,11 +219,11 @@ impl Stretch {
 
 /// Returns the point of a line at which a linear function, given by its `values` at the ends, equals `value`;
 /// `None` outside the line.
-pub(super) fn between(ends: &[Station; 2], values: &[f64; 2], value: f64, rounding: f64) -> Option<Station> {
-    if !(value >= values[0] - rounding && value <= values[1] + rounding) {
+pub(super) fn between(ends: &[Station; 2], values: Interval, value: f64, rounding: f64) -> Option<Station> {
+    if !values.grown(rounding).contains(value) {
         return None;
     }
-    let share = ((value - values[0]) / (values[1] - values[0])).clamp(0.0, 1.0);
+    let share = ((value - values.low) / values.width()).clamp(0.0, 1.0);
     let [a, b] = ends;
     Some(Station { x: a.x + share * (b.x - a.x), z: a.z + share * (b.z - a.z), ..*a })
 }

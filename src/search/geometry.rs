@@ -6,6 +6,7 @@ use super::sweep::{Conicity, Equivalent, NoConicity};
 use super::touch::{Contact, Selection};
 use super::wheelset::{WheelsetOnTrack, WheelsetTouch};
 use crate::error::Result;
+use crate::numerics::interval::Interval;
 use crate::placement::Pair;
 use crate::profile::trace;
 
@@ -97,18 +98,15 @@ pub fn geometry_over(
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactBand {
     /// Least and largest abscissa on the rail's profile \[mm\].
-    pub rail_x: [f64; 2],
+    pub rail_x: Interval,
     /// Least and largest abscissa on the wheel's profile \[mm\].
-    pub wheel_x: [f64; 2],
+    pub wheel_x: Interval,
 }
 
 impl ContactBand {
     /// Returns the bands \[left, right\] of some contacts; `None` of none.
     pub fn of(all: &[GeometryAt]) -> Option<[Self; 2]> {
-        let range = |of: &dyn Fn(&GeometryAt) -> f64| {
-            let grown = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
-            all.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], grown)
-        };
+        let range = |of: &dyn Fn(&GeometryAt) -> f64| Interval::around(all.iter().map(of));
         let band = |side: usize| Self {
             rail_x: range(&|at| at.contacts[side].rail_x),
             wheel_x: range(&|at| at.contacts[side].wheel_x),
@@ -264,7 +262,7 @@ mod tests {
             let (one, two) = (one?, two?);
             let (Some(a), Some(b)) = (one.bands, two.bands) else { panic!("{one:?} {two:?}") };
             for (a, b) in a.iter().zip(&b) {
-                let ends = |band: &ContactBand| [band.rail_x, band.wheel_x].concat();
+                let ends = |band: &ContactBand| [band.rail_x, band.wheel_x].map(Interval::ends).concat();
                 assert!(ends(a).iter().zip(ends(b)).all(|(a, b)| (a - b).abs() < 1e-6), "{a:?} {b:?}");
             }
             let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;

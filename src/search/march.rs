@@ -7,6 +7,7 @@ use super::sweep::{Sweep, SweepRow, TrackSide};
 use super::touch::{Contact, ONE_CONTACT, Selection};
 use super::wheelset::WheelsetOnTrack;
 use crate::error::{Error, Result, in_order};
+use crate::numerics::interval::Interval;
 
 /// Places of one block: enough work for all threads, and little memory.
 const BLOCK: usize = 1024;
@@ -24,7 +25,7 @@ pub struct March {
     /// Which places of contact are reported.
     pub selection: Selection,
     /// Where all rails that vary have slices \[mm\]; without end where none varies.
-    pub reach: [f64; 2],
+    pub reach: Interval,
     /// Pitch at which it goes along the track \[rad\]: see [`super::WheelsetSearch::stand_at`].
     pub pitch: f64,
 }
@@ -237,7 +238,7 @@ impl<'a> Way<'a> {
 
     /// Rejects bodies that do not vary along the course.
     fn goes(&self) -> Result<()> {
-        let along_rails = self.march.reach[0].is_finite();
+        let along_rails = self.march.reach.low.is_finite();
         match self.course {
             Course::Track if !along_rails => {
                 let expected = "a rail that varies: a list .slcs of slices without `along`";
@@ -263,13 +264,13 @@ impl<'a> Way<'a> {
 
     /// Rejects a place \[mm\] where a rail has no slices, and a pitch that is no number.
     fn reaches(&self, at: f64) -> Result<()> {
-        let [from, to] = self.march.reach;
-        if (from..=to).contains(&at) && at.is_finite() {
+        let reach = self.march.reach;
+        if reach.contains(at) && at.is_finite() {
             return Ok(());
         }
         let (name, unit) = self.course.name();
         let expected = match self.course {
-            Course::Track => format!("a place from {from} to {to} mm, where all slices are"),
+            Course::Track => format!("a place from {} to {} mm, where all slices are", reach.low, reach.high),
             Course::Pitch => "an angle".into(),
         };
         Err(Error::new(name, format!("{at} {unit}"), expected, "march where the lists reach"))

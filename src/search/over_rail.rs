@@ -98,9 +98,9 @@ impl SearchPair {
     /// below 45° may rise above their profile by their own ring.
     pub fn highest(&self, attitude: &Attitude) -> f64 {
         let [x, z] = self.wheel.extent;
-        let tilted = (-x[0] * attitude.sin_roll).max(-x[1] * attitude.sin_roll);
+        let tilted = (-x.low * attitude.sin_roll).max(-x.high * attitude.sin_roll);
         let steepest = attitude.tan_yaw;
         let rise = self.radius * steepest * steepest / (1.0 + cosine(steepest));
-        z[1] * attitude.cos_roll + tilted + rise - self.rail.extent[1][0]
+        z.high * attitude.cos_roll + tilted + rise - self.rail.extent[1].low
     }
 }

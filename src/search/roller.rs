@@ -12,6 +12,7 @@
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use super::over_rail::RailSearch;
+use crate::numerics::interval::Interval;
 
 /// Most steps to the ν of a place. Each gains a digit or more; halving alone takes some 60.
 const STEPS: usize = 80;
@@ -128,7 +129,7 @@ pub(super) fn at_own_turn(
 ) -> Option<Candidate> {
     let mut slope = -(attitude.radius + roller);
     let rounding = f64::EPSILON * -slope;
-    let (mut ends, mut meeting, mut last) = ([f64::NEG_INFINITY, f64::INFINITY], *meeting, None);
+    let (mut ends, mut meeting, mut last) = (Interval::ALL, *meeting, None);
     let mut first = first.copied();
     for _ in 0..STEPS {
         let turn = meeting.turn;
@@ -139,7 +140,11 @@ pub(super) fn at_own_turn(
         if beside.abs() <= rounding {
             return Some(seen);
         }
-        ends[usize::from(beside < 0.0)] = turn;
+        if beside < 0.0 {
+            ends.high = turn;
+        } else {
+            ends.low = turn;
+        }
         if let Some((before, value)) = last
             && before != turn
         {
@@ -148,9 +153,8 @@ pub(super) fn at_own_turn(
         }
         last = Some((turn, beside));
         let next = turn - beside / slope;
-        let inside = ends[0] < next && next < ends[1];
-        let next = if inside { next } else { ends[0] + (ends[1] - ends[0]) / 2.0 };
-        if next == turn || next == ends[0] || next == ends[1] {
+        let next = if ends.low < next && next < ends.high { next } else { ends.at(0.5) };
+        if next == turn || next == ends.low || next == ends.high {
             return Some(seen);
         }
         meeting = Meeting { turn: next, ..seen.meeting };

@@ -17,6 +17,7 @@ use super::candidates::{EQUAL_CURVATURES, Foot, Search};
 use super::element::{Element, ElementCurve, ElementPoint, rising_root};
 use super::placed::{PlacedBounds, outline_bounds, placed_bounds};
 use crate::numerics::cosine;
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::profile::Side;
 
@@ -42,7 +43,7 @@ pub(super) const SAME_TANGENT: f64 = 2.0 * LEAST_KINK;
 #[derive(Clone, Copy)]
 struct StretchPart {
     /// Range of the parameter.
-    range: [f64; 2],
+    range: Interval,
     /// Parameter of the middle.
     middle: f64,
     /// Point at the middle: of the wheel's outline, or of the rail.
@@ -50,7 +51,7 @@ struct StretchPart {
     /// Bounds in the rail's axes.
     placed: PlacedBounds,
     /// Least and largest curvature \[1/mm\]: of the wheel's outline where it is seen, or of the rail.
-    curvature: [f64; 2],
+    curvature: Interval,
     /// Number of halvings so far.
     depth: u32,
 }
@@ -89,8 +90,8 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
         return;
     }
     let whole = |element: &Element, place, placed, curvature| {
-        let [a, b] = element.range;
-        StretchPart { range: [a, b], middle: a + (b - a) / 2.0, place, placed, curvature, depth: 0 }
+        let range = element.range;
+        StretchPart { range, middle: range.at(0.5), place, placed, curvature, depth: 0 }
     };
     let placed = placed.copied();
     let placed = placed
@@ -113,30 +114,30 @@ impl StretchPart {
     /// Returns whether there is at most one common tangent of this part of the wheel and a part of the rail,
     /// and it can only be a least gap.
     fn is_rounder(&self, rail: &Self) -> bool {
-        self.curvature[0] > rail.curvature[1]
+        self.curvature.low > rail.curvature.high
     }
 }
 
 /// Returns whether a part of the wheel is everywhere less curved than a part of the rail: a common tangent is
 /// then a largest gap, not a least one.
-fn flatter(wheel: [f64; 2], rail: [f64; 2]) -> bool {
-    let (above, below) = (wheel[1], rail[0]);
+fn flatter(wheel: Interval, rail: Interval) -> bool {
+    let (above, below) = (wheel.high, rail.low);
     above < below && below - above > EQUAL_CURVATURES * (above.abs() + below.abs())
 }
 
 impl StretchPair<'_, '_> {
     /// Makes the part of an element over `range`; `None` if it has no outline.
-    fn half(&self, side: Side, range: [f64; 2], depth: u32) -> Option<StretchPart> {
+    fn half(&self, side: Side, range: Interval, depth: u32) -> Option<StretchPart> {
         let (element, body) = (self.shapes[index(side)], self.search.bodies[index(side)]);
-        let half = (range[1] - range[0]) / 2.0;
-        let middle = range[0] + half;
+        let half = range.width() / 2.0;
+        let middle = range.low + half;
         let own = element.place(&body.coefficients, middle);
         let bounds = match &element.shape {
             ElementCurve::Stretch(stretch) => {
                 stretch.reach.around(&own.station, own.curvature, half, side, body.rounding)
             }
             ElementCurve::Arc(arc) => {
-                let ends = range.map(|sin| arc.at(sin, cosine(sin)));
+                let ends = range.ends().map(|sin| arc.at(sin, cosine(sin)));
                 Bounds::of_arc(&ends, &own.station, element.bounds.curvature, side, body.rounding)
             }
             ElementCurve::Line => element.bounds,
@@ -219,10 +220,10 @@ impl StretchPair<'_, '_> {
     /// Returns a bound of the length of a part that can be halved \[mm\]; `None` if it cannot. The bounds of
     /// an arc leave nothing open, except the curvature of a yawed arc's outline.
     fn length(&self, side: Side, part: &StretchPart) -> Option<f64> {
-        let placed = part.placed.x[1] - part.placed.x[0];
+        let placed = part.placed.x.width();
         let length = match &self.shapes[index(side)].shape {
             ElementCurve::Stretch(stretch) => {
-                placed.max((part.range[1] - part.range[0]) * stretch.reach.run.hypot(stretch.reach.rise))
+                placed.max(part.range.width() * stretch.reach.run.hypot(stretch.reach.rise))
             }
             ElementCurve::Arc(_) if side == Side::Wheel && self.search.attitude.sin_yaw != 0.0 => placed,
             _ => return None,
@@ -231,30 +232,28 @@ impl StretchPair<'_, '_> {
     }
 
     fn halves(&self, side: Side, part: &StretchPart) -> [Option<StretchPart>; 2] {
-        let [a, b] = part.range;
-        [[a, part.middle], [part.middle, b]].map(|range| self.half(side, range, part.depth + 1))
+        part.range.split(part.middle).map(|range| self.half(side, range, part.depth + 1))
     }
 
     /// Returns what the middles and curvatures of two parts tell about the abscissae at which the tangents
     /// can be equal.
-    fn look(&self, wheel: &StretchPart, rail: &StretchPart, [low, high]: [f64; 2]) -> Verdict {
+    fn look(&self, wheel: &StretchPart, rail: &StretchPart, shared: Interval) -> Verdict {
         let (above, below) = (&wheel.place.station, &rail.place.station);
         if above.sin.is_nan() {
             return Verdict::Open;
         }
         let slack = self.search.slack;
-        let ([w0, w1], [r0, r1]) = (wheel.curvature, rail.curvature);
-        if r0 == f64::NEG_INFINITY && rail.place.run == 0.0 {
+        if rail.curvature.low == f64::NEG_INFINITY && rail.place.run == 0.0 {
             // The rail's part is a point.
-            let there = reached(above.sin, [w0, w1], below.x - above.x);
+            let there = reached(above.sin, wheel.curvature, below.x - above.x);
             return if apart(there, rail.placed.sine) {
                 Verdict::Nothing
             } else {
                 one_or_open(wheel, rail, below.x)
             };
         }
-        let there = reached(below.sin, [r0, r1], above.x - below.x);
-        if w1 == f64::INFINITY && wheel.place.run == 0.0 {
+        let there = reached(below.sin, rail.curvature, above.x - below.x);
+        if wheel.curvature.high == f64::INFINITY && wheel.place.run == 0.0 {
             // The part of an unyawed wheel is a point.
             return if apart(there, wheel.placed.sine) {
                 Verdict::Nothing
@@ -263,42 +262,33 @@ impl StretchPair<'_, '_> {
             };
         }
         // D = 0 at X, with D'(X − X_W) = the rail's sine at X_W less the wheel's.
-        let missing = [there[0] - above.sin - SAME_TANGENT, there[1] - above.sin + SAME_TANGENT];
+        let missing = (there + -above.sin).grown(SAME_TANGENT);
+        let slope = wheel.curvature + -rail.curvature;
         if wheel.is_rounder(rail) {
-            let slope = [w0 - r1, w1 - r0];
-            let first = missing[0] / if missing[0] > 0.0 { slope[1] } else { slope[0] };
-            let last = missing[1] / if missing[1] > 0.0 { slope[0] } else { slope[1] };
-            let (first, last) = ((above.x + first).max(low - slack), (above.x + last).min(high + slack));
-            if first > last {
+            let first = missing.low / if missing.low > 0.0 { slope.high } else { slope.low };
+            let last = missing.high / if missing.high > 0.0 { slope.low } else { slope.high };
+            let equal = (Interval::new(first, last) + above.x).cut(shared.grown(slack));
+            if equal.is_empty() {
                 return Verdict::Nothing;
             }
-            // Where the tangents would be equal with the curvatures of both middles.
+            // Where the tangents would be equal with the curvatures of both middles, or NaN.
             let bends = [&wheel.place, &rail.place].map(|place| place.turn / place.run);
             let near =
                 above.x + (below.sin - above.sin + bends[1] * (above.x - below.x)) / (bends[0] - bends[1]);
-            return Verdict::OneNear(if near.is_nan() { first } else { near.max(first).min(last) });
+            return Verdict::OneNear(equal.nearest(near));
         }
-        let reach = (low - above.x).abs().max((high - above.x).abs()) + slack;
-        let least = if missing[0] > 0.0 {
-            missing[0]
-        } else if missing[1] < 0.0 {
-            -missing[1]
-        } else {
-            0.0
-        };
-        if least > reach * (w0 - r1).abs().max((w1 - r0).abs()) {
-            return Verdict::Nothing;
-        }
-        Verdict::Open
+        let reach = (shared + -above.x).magnitude() + slack;
+        let least = missing.nearest(0.0).abs();
+        if least > reach * slope.magnitude() { Verdict::Nothing } else { Verdict::Open }
     }
 
     /// Returns the parameters in the middle of the shared abscissae if the two parts have the same tangents
     /// there, at both ends and half way to them: more places than two curves of a drawing share by chance.
     /// `None` with yaw.
     fn agree(&self, wheel: &StretchPart, rail: &StretchPart) -> Option<[f64; 2]> {
-        let [low, high] = wheel.placed.shared(&rail.placed);
+        let shared = wheel.placed.shared(&rail.placed);
         let same = |share: f64| {
-            let x = low + (high - low) * share;
+            let x = shared.at(share);
             let parameters =
                 [self.parameter_at(Side::Wheel, wheel, x), self.parameter_at(Side::Rail, rail, x)];
             let places = self.places(parameters);
@@ -319,10 +309,10 @@ impl StretchPair<'_, '_> {
     fn between_ends(
         &self,
         [wheel, rail]: [&StretchPart; 2],
-        above: [f64; 2],
-        below: [f64; 2],
+        above: Interval,
+        below: Interval,
     ) -> Option<[f64; 2]> {
-        let (low, high) = (above[0].max(below[0]), above[1].min(below[1]));
+        let Interval { low, high } = above.cut(below);
         if low > high + self.search.slack {
             return None;
         }
@@ -330,18 +320,18 @@ impl StretchPair<'_, '_> {
             |x: f64| [self.parameter_at(Side::Wheel, wheel, x), self.parameter_at(Side::Rail, rail, x)];
         let turn =
             |[p, q]: [f64; 2]| self.at(Side::Wheel, p).station.sin - self.at(Side::Rail, q).station.sin;
-        if below[0] == below[1] || above[0] == above[1] {
-            // One part is a point: it takes the other's tangent.
+        let [above_is_point, below_is_point] = [above, below].map(|x| x.low == x.high);
+        if above_is_point || below_is_point {
+            // It takes the other's tangent.
             let [p, q] = parameters(low);
-            let (point, other) = if below[0] == below[1] {
+            let (point, other) = if below_is_point {
                 (rail, self.at(Side::Wheel, p))
             } else {
                 (wheel, self.at(Side::Rail, q))
             };
             let sin = other.station.sin;
-            let inside =
-                sin >= point.placed.sine[0] - SAME_TANGENT && sin <= point.placed.sine[1] + SAME_TANGENT;
-            let both = if below[0] == below[1] { [p, sin] } else { [sin, q] };
+            let inside = point.placed.sine.grown(SAME_TANGENT).contains(sin);
+            let both = if below_is_point { [p, sin] } else { [sin, q] };
             return inside.then_some(both);
         }
         let ends = [low, high].map(parameters);
@@ -357,11 +347,11 @@ impl StretchPair<'_, '_> {
             .map(parameters)
     }
 
-    /// Returns the abscissae of both ends of a part, ascending; `None` if one end of a yawed wheel's part has
+    /// Returns the abscissae between both ends of a part; `None` if one end of a yawed wheel's part has
     /// no outline.
-    fn ends(&self, side: Side, part: &StretchPart) -> Option<[f64; 2]> {
-        let [a, b] = part.range.map(|p| self.at(side, p).station.x);
-        if a <= b { Some([a, b]) } else { (b < a).then_some([b, a]) }
+    fn ends(&self, side: Side, part: &StretchPart) -> Option<Interval> {
+        let [a, b] = part.range.ends().map(|p| self.at(side, p).station.x);
+        a.partial_cmp(&b).map(|_| Interval::between(a, b))
     }
 
     /// Returns the point at a parameter, in the rail's axes.
@@ -377,13 +367,10 @@ impl StretchPair<'_, '_> {
             let place = self.at(side, p);
             [place.station.x, place.run]
         };
-        let values = part.range.map(|p| at(p)[0]);
-        let [a, b] = part.range;
-        if values[0] <= values[1] {
-            rising_root([a, b], values, x, at)
-        } else {
-            rising_root([b, a], [values[1], values[0]], x, at)
-        }
+        let [a, b] = part.range.ends();
+        let (first, last) = (at(a)[0], at(b)[0]);
+        let ends = if first <= last { [a, b] } else { [b, a] };
+        rising_root(ends, Interval::between(first, last), x, at)
     }
 
     /// Returns the points of both elements at two parameters, each in its own axes and in the rail's.
@@ -414,13 +401,13 @@ fn foot(element: &Element, own: &ElementPoint, parameter: f64) -> Foot {
 }
 
 /// Returns the bounds of a sine at a distance along x, from the bounds of the curvature on the way.
-fn reached(sine: f64, curvature: [f64; 2], distance: f64) -> [f64; 2] {
-    let ends = curvature.map(|k| if distance == 0.0 { 0.0 } else { k * distance });
-    [sine + ends[0].min(ends[1]), sine + ends[0].max(ends[1])]
+fn reached(sine: f64, curvature: Interval, distance: f64) -> Interval {
+    let Interval { low, high } = curvature.map(|k| if distance == 0.0 { 0.0 } else { k * distance });
+    Interval::of(low).with(high) + sine
 }
 
-fn apart(a: [f64; 2], b: [f64; 2]) -> bool {
-    a[0] > b[1] + SAME_TANGENT || b[0] > a[1] + SAME_TANGENT
+fn apart(a: Interval, b: Interval) -> bool {
+    a.low > b.high + SAME_TANGENT || b.low > a.high + SAME_TANGENT
 }
 
 fn one_or_open(wheel: &StretchPart, rail: &StretchPart, x: f64) -> Verdict {
@@ -434,7 +421,7 @@ fn towards(part: &StretchPart, x: f64, other: &StretchPart) -> f64 {
     let step =
         if run == 0.0 { (other.place.station.sin - station.sin) / turn } else { (x - station.x) / run };
     let p = part.middle + step;
-    if p.is_nan() { part.middle } else { p.clamp(part.range[0], part.range[1]) }
+    if p.is_nan() { part.middle } else { p.clamp(part.range.low, part.range.high) }
 }
 
 fn places(search: &Search, shapes: [&Element; 2], [p, q]: [f64; 2]) -> [(ElementPoint, ElementPoint); 2] {
@@ -451,7 +438,7 @@ fn newton(
     search: &Search,
     shapes: [&Element; 2],
     start: [f64; 2],
-    limits: [[f64; 2]; 2],
+    limits: [Interval; 2],
 ) -> Option<[Foot; 2]> {
     let rounding = search.slack;
     let mut p = start;
@@ -473,7 +460,7 @@ fn newton(
                 ((rounding * below.turn).abs() + (below.run * SAME_TANGENT).abs()) / turn.abs(),
                 ((rounding * above.turn).abs() + (above.run * SAME_TANGENT).abs()) / turn.abs(),
             ];
-            let inside = |k: usize| p[k] >= limits[k][0] - slack[k] && p[k] <= limits[k][1] + slack[k];
+            let inside = |k: usize| limits[k].grown(slack[k]).contains(p[k]);
             if apart[0].abs() <= rounding {
                 return (inside(0) && inside(1))
                     .then(|| [foot(shapes[0], &own, p[0]), foot(shapes[1], &foot_place, p[1])]);
@@ -482,8 +469,8 @@ fn newton(
         settled = (above.run * step[0]).abs() + (below.run * step[1]).abs() <= rounding;
         for k in 0..2 {
             // Beyond its end an element is continued, but by no more than its own length.
-            let width = limits[k][1] - limits[k][0];
-            let next = (p[k] + step[k]).clamp(limits[k][0] - width, limits[k][1] + width);
+            let farthest = limits[k].grown(limits[k].width());
+            let next = (p[k] + step[k]).clamp(farthest.low, farthest.high);
             p[k] = if matches!(shapes[k].shape, ElementCurve::Arc(_)) { next.clamp(-1.0, 1.0) } else { next };
         }
     }

@@ -12,6 +12,7 @@ use super::over_rail::{RailSearch, SearchPair, Work};
 use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, Result, finite};
 use crate::lofted::{FramedLoft, LoftedBody, section};
+use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 
@@ -344,20 +345,20 @@ impl Contact {
             }
         };
         let (loft, foot) = (framed.loft(), framed.foot(0.0, 0.0).ok_or_else(nowhere)?);
-        let [first, last] = loft.strips[foot.strip].reach();
-        let section = section(loft, foot.strip, framed.along().clamp(first, last))?;
+        let reach = loft.strips[foot.strip].reach();
+        let section = section(loft, foot.strip, framed.along().clamp(reach.low, reach.high))?;
         let pair = match framed.side() {
             Side::Rail => pair.with_rail(section)?,
             Side::Wheel => pair.with_wheel(section.upside_down())?,
         };
         // At the end of a part the section may end a rounding before.
-        let [rail, wheel] = pair.sections().map(Section::reach);
-        let within = |x: f64, [low, high]: [f64; 2]| x.clamp(low, high);
         let mut here = *self;
-        match framed.side() {
-            Side::Rail => here.rail_x = within(self.rail_x, rail.ok_or_else(nowhere)?),
-            Side::Wheel => here.wheel_x = within(self.wheel_x, wheel.ok_or_else(nowhere)?),
-        }
+        let ([rail, wheel], side) = (pair.sections(), framed.side());
+        let (section, x) = match side {
+            Side::Rail => (rail, &mut here.rail_x),
+            Side::Wheel => (wheel, &mut here.wheel_x),
+        };
+        *x = Interval::from(section.reach().ok_or_else(nowhere)?).nearest(*x);
         Ok(here.placed(&pair)?.with_loft(Arc::new(framed)))
     }
 }

@@ -165,8 +165,7 @@ fn gap_at(search: &Search, meeting: &Meeting) -> Option<f64> {
     let [wheel, _] = search.elements(meeting.elements);
     let own = wheel.place(&above.coefficients, meeting.parameters[0]).station;
     let outline = search.attitude.outline(&own);
-    let [low, high] = below.extent[0];
-    if !(outline.x >= low && outline.x <= high && outline.cos > 0.0) {
+    if !(below.extent[0].contains(outline.x) && outline.cos > 0.0) {
         return None;
     }
     let rail = &below.elements[below.element_at(outline.x)];

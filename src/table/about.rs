@@ -1,14 +1,15 @@
 //! What a table is of.
 
 use super::cell::{BREAK, INSIDE, YAW_COEFFICIENTS};
+use crate::numerics::interval::Interval;
 
 /// What a table is of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct About {
     /// Range of lateral displacements \[mm\].
-    pub lateral: [f64; 2],
+    pub lateral: Interval,
     /// Range of yaws \[rad\]: with equal ends the one yaw that all displacements have.
-    pub yaw: [f64; 2],
+    pub yaw: Interval,
     /// Nominal rolling radius \[mm\], over which the tolerance of angles is taken.
     pub radius: f64,
     /// Tolerance of lengths \[mm\].
@@ -18,7 +19,7 @@ pub struct About {
 impl About {
     /// Tells whether the table is over a range of yaws.
     pub fn over_yaw(&self) -> bool {
-        self.yaw[1] > self.yaw[0]
+        self.yaw.high > self.yaw.low
     }
 
     /// Returns how many coefficients the polynomials of the yaw have.

@@ -1,5 +1,6 @@
 //! What is asked of a table.
 
+use crate::numerics::interval::Interval;
 use crate::search::Roll;
 
 /// What presses a wheel onto its rail.
@@ -15,9 +16,9 @@ pub enum Pressed {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Asked {
     /// Range of the lateral displacement \[mm\], + to the right.
-    pub lateral: [f64; 2],
+    pub lateral: Interval,
     /// Range of the yaw \[rad\]: with equal ends the one yaw of all displacements.
-    pub yaw: [f64; 2],
+    pub yaw: Interval,
     /// How the roll is found.
     pub roll: Roll,
     /// Tolerance of lengths \[mm\]; the tolerances of other quantities follow from it: [`Quantity::tolerance`](super::Quantity::tolerance).

@@ -6,6 +6,7 @@ use super::asked::Asked;
 use super::cell::{BREAK, Beginning};
 use super::state::{Sampler, State};
 use crate::error::{Error, ErrorKind, Result, in_order};
+use crate::numerics::interval::Interval;
 use crate::search::WheelsetOnTrack;
 
 /// Distance of the displacements \[mm\] between which breaks are looked for.
@@ -42,14 +43,19 @@ pub(super) struct Row {
     pub breaks: Vec<Break>,
 }
 
+/// Gives the displacements \[mm\] between the two states of a break.
+pub(super) fn laterals(states: &Break) -> Interval {
+    states.each_ref().map(|state| state.lateral).into()
+}
+
 /// Finds the states at both ends of a range \[mm\] under a yaw \[rad\], and all breaks in it. A range without width is one state.
-pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, [from, to]: [f64; 2]) -> Result<Row> {
-    if from >= to {
-        let state = Sampler::new(system, asked, yaw).at(from + (to - from) / 2.0, 0.0)?;
+pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, range: Interval) -> Result<Row> {
+    if range.low >= range.high {
+        let state = Sampler::new(system, asked, yaw).at(range.at(0.5), 0.0)?;
         return Ok(Row { yaw, ends: [state.clone(), state], breaks: Vec::new() });
     }
-    let steps = ((to - from) / STEP).ceil().max(1.0) as usize;
-    let at = |k: usize| if k == steps { to } else { from + (to - from) * (k as f64 / steps as f64) };
+    let steps = (range.width() / STEP).ceil().max(1.0) as usize;
+    let at = |k: usize| if k == steps { range.high } else { range.at(k as f64 / steps as f64) };
     let chunk = |first: usize| -> Result<(Option<State>, State, Vec<Break>)> {
         let mut sampler = Sampler::new(system, asked, yaw);
         let all: Vec<f64> = (first..=(first + CHUNK).min(steps)).map(at).collect();
@@ -125,8 +131,8 @@ pub(super) fn divide(
     }
     let steepest = from.steepest().max(to.steepest()).max(STEEPEST);
     let within = (steepest + STEEPEST) * width;
-    if let Some([a, b]) = sampler.handover(from, to) {
-        let (before, after) = (sampler.near(a, within, from)?, sampler.near(b, within, to)?);
+    if let Some(Interval { low, high }) = sampler.handover(from, to) {
+        let (before, after) = (sampler.near(low, within, from)?, sampler.near(high, within, to)?);
         if before.topology == from.topology && after.topology == to.topology {
             divide(sampler, from, &before, breaks)?;
             breaks.push([before.clone(), after.clone()]);

@@ -8,10 +8,11 @@ use super::quantity::{MOST, Quantity};
 use super::region::Divider;
 use super::tree::Tree;
 use crate::error::{Error, ErrorKind, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::search::WheelsetOnTrack;
 
 /// Tolerances \[mm\] that a table can have: below the first the rounding of a search counts, above the other nobody reads places.
-const TOLERANCES: [f64; 2] = [1e-6, 1.0];
+const TOLERANCES: Interval = Interval::new(1e-6, 1.0);
 
 /// Widest range \[mm\]: far beyond any play of a wheelset.
 const WIDEST: f64 = 200.0;
@@ -43,7 +44,7 @@ pub fn build(system: &WheelsetOnTrack, asked: &Asked) -> Result<ContactTable> {
     }
     let table = ContactTable::of(about, quantities, Tree::of(branch, about))?;
     if table.cells().iter().all(|cell| !cell.touches) {
-        let [from, to] = asked.lateral;
+        let [from, to] = asked.lateral.ends();
         let found = format!("no contact from {from} to {to} mm");
         let error = Error::new("table: lateral", found, "wheels over their rails", "take another range");
         return Err(error.of_kind(ErrorKind::NoContact));
@@ -52,23 +53,22 @@ pub fn build(system: &WheelsetOnTrack, asked: &Asked) -> Result<ContactTable> {
 }
 
 fn check(system: &WheelsetOnTrack, asked: &Asked) -> Result<()> {
-    let [from, to] = asked.lateral;
+    let [from, to] = asked.lateral.ends();
     finite("table: lateral", from)?;
     finite("table: lateral", to)?;
     if from >= to || to - from > WIDEST {
         let expected = format!("FROM < TO, at most {WIDEST} mm apart");
         return Err(Error::new("table: lateral", format!("{from}:{to}"), expected, "for example -9:9"));
     }
-    let [first, last] = asked.yaw;
+    let [first, last] = asked.yaw.ends();
     finite("table: yaw", first)?;
     finite("table: yaw", last)?;
     if first > last {
         let found = format!("{first}:{last}");
         return Err(Error::new("table: yaw", found, "FROM < TO in rad", "for example -0.02:0.02"));
     }
-    let [least, most] = TOLERANCES;
-    if !(least..=most).contains(&asked.tolerance) {
-        let expected = format!("a length from {least:e} to {most} mm");
+    if !TOLERANCES.contains(asked.tolerance) {
+        let expected = format!("a length from {:e} to {} mm", TOLERANCES.low, TOLERANCES.high);
         return Err(Error::new(
             "table: tolerance",
             asked.tolerance.to_string(),

@@ -1,5 +1,7 @@
 //! Cells: pieces of the plane of lateral displacement and yaw over which nothing jumps.
 
+use crate::numerics::interval::Interval;
+
 /// Coefficients of a polynomial along the lateral displacement: its degree is 8.
 pub const COEFFICIENTS: usize = 9;
 
@@ -61,7 +63,7 @@ impl Lacks {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
     /// The yaws \[rad\] between which it lies: u is −1 at the first one, 1 at the last one.
-    pub yaw: [f64; 2],
+    pub yaw: Interval,
     /// Numbers of the curves at which it begins and ends.
     pub curves: [usize; 2],
     /// Whether both wheels touch; where they do not, the cell has no polynomials.

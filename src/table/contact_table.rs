@@ -11,17 +11,19 @@ use super::quantity::{MOST, Quantity};
 use super::read::{Parsed, parse};
 use super::tree::{Fork, Part, Tree};
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 
 /// A contact table.
 ///
 /// # Examples
 /// ```
-/// # use wheelrail::{Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, standards};
+/// # use wheelrail::{Interval, Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, standards};
 /// use wheelrail::table::{Asked, build};
 ///
 /// let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
 /// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?;
-/// let asked = Asked { lateral: [-1.0, 1.0], yaw: [0.0; 2], roll: Roll::Solve, tolerance: 1e-3, pressed: None };
+/// let (lateral, yaw) = (Interval::new(-1.0, 1.0), Interval::of(0.0));
+/// let asked = Asked { lateral, yaw, roll: Roll::Solve, tolerance: 1e-3, pressed: None };
 /// let table = build(&system, &asked)?;
 ///
 /// let radius = table.number("rolling_radius_mm", Some(true)).expect("a column of every table");
@@ -142,8 +144,7 @@ impl ContactTable {
     /// Returns the number of the cell of a lateral displacement \[mm\] and a yaw \[rad\]; `None` outside the range.
     #[inline(always)]
     pub fn cell(&self, lateral: f64, yaw: f64) -> Option<usize> {
-        let within = |[from, to]: [f64; 2], value: f64| (from..=to).contains(&value);
-        if !within(self.about.lateral, lateral) || !within(self.about.yaw, yaw) {
+        if !self.about.lateral.contains(lateral) || !self.about.yaw.contains(yaw) {
             return None;
         }
         let mut part = if self.forks.is_empty() { Part::Cell(0) } else { Part::Fork(0) };
@@ -164,8 +165,8 @@ impl ContactTable {
 
     /// Returns the displacements \[mm\] at which a cell begins and ends under a yaw \[rad\].
     #[inline(always)]
-    pub fn ends(&self, cell: usize, yaw: f64) -> [f64; 2] {
-        self.cells[cell].curves.map(|curve| self.curves[curve].at(yaw))
+    pub fn ends(&self, cell: usize, yaw: f64) -> Interval {
+        self.cells[cell].curves.map(|curve| self.curves[curve].at(yaw)).into()
     }
 
     /// Returns how a cell begins.
@@ -249,27 +250,26 @@ impl ContactTable {
 
     /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under a yaw \[rad\], in ascending order: the table has
     /// nothing there.
-    pub fn off_rail(&self, yaw: f64) -> Vec<[f64; 2]> {
+    pub fn off_rail(&self, yaw: f64) -> Vec<Interval> {
         let off = self.under(yaw).into_iter().filter(|cell| !self.cells[*cell].touches);
         off.map(|cell| self.ends(cell, yaw)).collect()
     }
 
     /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under one of the yaws, in ascending order.
-    pub fn off_rail_somewhere(&self) -> Vec<[f64; 2]> {
+    pub fn off_rail_somewhere(&self) -> Vec<Interval> {
         let off = (0..self.cells.len()).filter(|cell| !self.cells[*cell].touches);
-        let mut ranges: Vec<[f64; 2]> = off
+        let mut ranges: Vec<Interval> = off
             .map(|cell| {
-                let [first, last] = self.cells[cell].yaw;
-                let yaws = [first, first + (last - first) / 2.0, last];
-                let ends = yaws.map(|yaw| self.ends(cell, yaw));
-                ends.into_iter().fold(ends[0], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
+                let yaw = self.cells[cell].yaw;
+                let ends = [yaw.low, yaw.at(0.5), yaw.high].map(|yaw| self.ends(cell, yaw));
+                ends.into_iter().fold(Interval::NONE, Interval::hull)
             })
             .collect();
-        ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        ranges.sort_by(|a, b| a.low.total_cmp(&b.low));
         ranges.dedup_by(|next, before| {
-            let joined = next[0] <= before[1];
+            let joined = next.low <= before.high;
             if joined {
-                before[1] = before[1].max(next[1]);
+                before.high = before.high.max(next.high);
             }
             joined
         });
@@ -279,7 +279,7 @@ impl ContactTable {
     /// Returns the displacements \[mm\] of hops, joints or edges under a yaw \[rad\], in ascending order.
     pub fn places(&self, kind: Beginning, yaw: f64) -> Vec<f64> {
         let cells = self.under(yaw).into_iter().skip(1);
-        cells.filter(|cell| self.begins(*cell) == kind).map(|cell| self.ends(cell, yaw)[0]).collect()
+        cells.filter(|cell| self.begins(*cell) == kind).map(|cell| self.ends(cell, yaw).low).collect()
     }
 }
 

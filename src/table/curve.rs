@@ -5,12 +5,13 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use super::cell::{Beginning, COEFFICIENTS, YAW_COEFFICIENTS};
+use crate::numerics::interval::Interval;
 
 /// A curve in the plane of yaw and lateral displacement: a polynomial of the yaw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
     /// The yaws \[rad\] between which it was fitted: u is −1 at the first one, 1 at the last one.
-    pub yaw: [f64; 2],
+    pub yaw: Interval,
     /// What happens across it.
     pub kind: Beginning,
     /// Coefficients \[mm\] of 1, u, …; behind those of a table over one yaw 0.
@@ -19,14 +20,14 @@ pub struct Curve {
 
 impl Curve {
     /// Makes the curve of one displacement \[mm\] under all yaws.
-    pub(super) fn constant(lateral: f64, yaw: [f64; 2], kind: Beginning) -> Self {
+    pub(super) fn constant(lateral: f64, yaw: Interval, kind: Beginning) -> Self {
         let mut coefficients = [0.0; YAW_COEFFICIENTS];
         coefficients[0] = lateral;
         Self { yaw, kind, coefficients }
     }
 
     /// Interpolates displacements \[mm\] at the nodes of a range of yaws \[rad\]; a single one is under all yaws.
-    pub(super) fn through(nodes: &[f64], yaw: [f64; 2], kind: Beginning) -> Self {
+    pub(super) fn through(nodes: &[f64], yaw: Interval, kind: Beginning) -> Self {
         let Ok(nodes) = <[f64; YAW_COEFFICIENTS]>::try_from(nodes) else {
             return Self::constant(nodes.first().copied().unwrap_or_default(), yaw, kind);
         };
@@ -35,9 +36,9 @@ impl Curve {
     }
 
     /// Returns the coefficients \[mm\] of 1, u, … with u from −1 to 1 over other yaws \[rad\].
-    pub fn over(&self, yaw: [f64; 2]) -> [f64; YAW_COEFFICIENTS] {
+    pub fn over(&self, yaw: Interval) -> [f64; YAW_COEFFICIENTS] {
         let nodes: [f64; YAW_COEFFICIENTS] =
-            from_fn(|k| self.at(yaw[0] + (yaw[1] - yaw[0]) * (0.5 * (1.0 + node(k, YAW_COEFFICIENTS)))));
+            from_fn(|k| self.at(yaw.at(0.5 * (1.0 + node(k, YAW_COEFFICIENTS)))));
         Self::through(&nodes, yaw, self.kind).coefficients
     }
 
@@ -49,9 +50,14 @@ impl Curve {
     }
 }
 
+/// Returns the displacements \[mm\] between two curves under a yaw \[rad\].
+pub(super) fn between(curves: &[Curve; 2], yaw: f64) -> Interval {
+    curves.map(|curve| curve.at(yaw)).into()
+}
+
 /// Returns where a value is in an interval: −1 at its beginning, 1 at its end; 0 in one without width.
 #[inline(always)]
-pub(super) fn share([from, to]: [f64; 2], value: f64) -> f64 {
+pub(super) fn share(Interval { low: from, high: to }: Interval, value: f64) -> f64 {
     if to > from { ((value - from) - (to - value)) / (to - from) } else { 0.0 }
 }
 

@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 
 use super::asked::Asked;
-use super::breaks::{Break, HOP, Row, divide};
+use super::breaks::{Break, HOP, Row, divide, laterals};
 use super::cell::{BREAK, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
-use super::curve::{Curve, POWERS, YAW_POWERS, node, share};
+use super::curve::{Curve, POWERS, YAW_POWERS, between, node, share};
 use super::quantity::{MOST, Needs, Quantity, Values};
 use super::state::{Sampler, State};
 use crate::error::{Result, in_order};
+use crate::numerics::interval::Interval;
 use crate::search::WheelsetOnTrack;
 
 /// Stated error over the largest difference in the check of a cell. The check is made where the polynomial through the nodes is
@@ -73,7 +74,7 @@ pub(super) fn fit(
 ) -> Result<Fit> {
     let begin = rows[0].ends[0].topology;
     let cell = Cell {
-        yaw: [rows[0].yaw, rows[rows.len() - 1].yaw],
+        yaw: Interval::new(rows[0].yaw, rows[rows.len() - 1].yaw),
         curves: [0; 2],
         touches: begin.is_some(),
         lacks: begin.map_or([Lacks::Nothing; 2], |topology| topology.lacks),
@@ -82,7 +83,7 @@ pub(super) fn fit(
         let fitted = Fitted { cell, coefficients: Vec::new(), errors: [0.0; MOST] };
         return Ok(Fit::Cell(Box::new(fitted)));
     }
-    let width = rows.iter().map(|row| row.ends[1].lateral - row.ends[0].lateral).fold(0.0, f64::max);
+    let width = rows.iter().map(|row| laterals(&row.ends).width()).fold(0.0, f64::max);
     let along = |row: &mut Row| {
         let mut sampler = Sampler::new(system, asked, row.yaw);
         let samples = samples(&mut sampler, &row.ends)?;
@@ -115,12 +116,12 @@ pub(super) fn fit(
 
 /// Searches at all points of a row.
 fn samples(sampler: &mut Sampler<'_>, ends: &Break) -> Result<Vec<State>> {
-    let [from, to] = ends.each_ref().map(|state| state.lateral);
+    let range = laterals(ends);
     let mut samples = Vec::with_capacity(SAMPLES);
     samples.push(ends[0].clone());
     for k in 1..SAMPLES - 1 {
-        let y = from + (to - from) * (0.5 * (1.0 + node(k, SAMPLES)));
-        let sample = sampler.near(y.clamp(from, to), 0.0, &samples[k - 1])?;
+        let y = range.at(0.5 * (1.0 + node(k, SAMPLES))).clamp(range.low, range.high);
+        let sample = sampler.near(y, 0.0, &samples[k - 1])?;
         samples.push(sample);
     }
     samples.push(ends[1].clone());
@@ -142,8 +143,8 @@ fn add_unseen(sampler: &mut Sampler<'_>, samples: &[State], row: &mut Row) -> Re
 
 /// Tells whether a break is known between two samples.
 fn is_known(breaks: &[Break], pair: &[State]) -> bool {
-    let [from, to] = [pair[0].lateral, pair[1].lateral];
-    breaks.iter().any(|[before, after]| after.lateral >= from && before.lateral <= to)
+    let range = Interval::new(pair[0].lateral, pair[1].lateral);
+    breaks.iter().any(|known| laterals(known).meets(range))
 }
 
 /// Adds breaks to a row, in order.
@@ -204,9 +205,8 @@ impl Fitted {
         rows: &[Row],
     ) -> (Self, bool) {
         let node = |(samples, row): (&Vec<State>, &Row)| {
-            let ends = row.ends.each_ref().map(|state| state.lateral);
-            let [from, to] = curves.map(|curve| share(ends, curve.at(row.yaw)));
-            stretched(&through(samples), [from, to])
+            let own = laterals(&row.ends);
+            stretched(&through(samples), between(curves, row.yaw).map(|y| share(own, y)))
         };
         let nodes: Vec<Powers> = samples.iter().zip(rows).step_by(2).map(node).collect();
         let mut coefficients = if nodes.len() < YAW_COEFFICIENTS { nodes } else { over_yaw(&nodes) };
@@ -231,7 +231,7 @@ impl Fitted {
         let most = 1.0 + MOST_STRETCHED;
         let mut shares = [0.0_f64; 2];
         for (r, (samples, row)) in samples.iter().zip(rows).enumerate() {
-            let (powers, ends) = (self.along(row.yaw), curves.map(|curve| curve.at(row.yaw)));
+            let (powers, ends) = (self.along(row.yaw), between(curves, row.yaw));
             for (k, sample) in samples.iter().enumerate() {
                 let values = at(&powers, share(ends, sample.lateral).clamp(-most, most));
                 let found = values.iter().zip(&sample.values).map(|(p, value)| (p - value).abs());
@@ -305,9 +305,9 @@ const MOST_STRETCHED: f64 = 0.5;
 
 /// Gives polynomials of t from −1 to 1 between curves from those between the ends of a row, which lie inside by what curves err. `ends` are
 /// the places of the curves in the row. A row that is not much longer than that is left alone.
-fn stretched(powers: &Powers, [from, to]: [f64; 2]) -> Powers {
-    let (slope, middle) = ((to - from) / 2.0, from + (to - from) / 2.0);
-    if !((from + 1.0).abs() < MOST_STRETCHED && (to - 1.0).abs() < MOST_STRETCHED) {
+fn stretched(powers: &Powers, ends: Interval) -> Powers {
+    let (slope, middle) = (ends.width() / 2.0, ends.at(0.5));
+    if !((ends.low + 1.0).abs() < MOST_STRETCHED && (ends.high - 1.0).abs() < MOST_STRETCHED) {
         return *powers;
     }
     let mut sum = [[0.0; MOST]; COEFFICIENTS];

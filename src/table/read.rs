@@ -9,6 +9,7 @@ use super::fit::exists;
 use super::quantity::{MOST, Quantity, Values};
 use super::tree::{Fork, Part, Tree};
 use crate::error::{Error, ErrorKind, Result};
+use crate::numerics::interval::Interval;
 
 /// Columns of a number.
 const WIDTH: usize = 25;
@@ -59,19 +60,19 @@ pub(super) fn parse(text: &str) -> Result<Parsed> {
         );
         return Err(deck.wrong(&found, &expected).of_kind(ErrorKind::Limit));
     }
-    let lateral = deck.numbers::<2>(0)?;
+    let lateral = Interval::from(deck.numbers(0)?);
     let (yaw, radius, tolerance) = if over_yaw {
-        let yaw = deck.numbers::<2>(0)?;
+        let yaw = Interval::from(deck.numbers(0)?);
         let [radius, tolerance, _] = deck.numbers::<3>(0)?;
         (yaw, radius, tolerance)
     } else {
         let [yaw, radius, tolerance] = deck.numbers::<3>(0)?;
-        ([yaw; 2], radius, tolerance)
+        (Interval::of(yaw), radius, tolerance)
     };
-    if over_yaw != (yaw[1] > yaw[0]) {
-        return Err(deck.wrong(&format!("yaws {yaw:?}"), "ascending ones"));
-    }
     let about = About { lateral, yaw, radius, tolerance };
+    if over_yaw != about.over_yaw() {
+        return Err(deck.wrong(&format!("yaws {:?}", yaw.ends()), "ascending ones"));
+    }
     let quantities = (0..count).map(|_| deck.quantity()).collect::<Result<Vec<_>>>()?;
     let tree = if over_yaw {
         deck.tree([cells, curves, forks], &quantities)?
@@ -141,17 +142,17 @@ impl<'a> Deck<'a> {
     /// Reads the cells of a table under one yaw, in ascending order over the whole range.
     fn row_of_cells(&mut self, count: usize, about: About, quantities: &[Quantity]) -> Result<Tree> {
         let (mut cells, mut all) = (Vec::new(), Vec::new());
-        let mut before = about.lateral[0];
+        let mut before = about.lateral.low;
         for c in 0..count {
             let line = self.line()?;
             let (cell, begins) = self.flags(line)?;
             let [from, to] = self.of_line::<2>(line, 8)?;
-            let whole = (c > 0 || from == before) && (c + 1 < count || to == about.lateral[1]);
+            let whole = (c > 0 || from == before) && (c + 1 < count || to == about.lateral.high);
             if !whole || from < before || to < from {
                 return Err(self.wrong(line, "ascending cells over the whole range"));
             }
             before = to;
-            cells.push(([from, to], begins, Cell { yaw: about.yaw, ..cell }));
+            cells.push((Interval::new(from, to), begins, Cell { yaw: about.yaw, ..cell }));
             all.push(self.coefficients(&cell, quantities, 1)?);
         }
         Ok(Tree { coefficients: all, ..Tree::of_cells(cells, about.yaw) })
@@ -166,7 +167,7 @@ impl<'a> Deck<'a> {
             let Some(kind) = kind.and_then(|code| Beginning::ALL.get(code).copied()) else {
                 return Err(self.wrong(line, "the code of a curve, 0 to 3"));
             };
-            let yaw = self.of_line::<2>(line, 8)?;
+            let yaw = self.of_line(line, 8)?.into();
             let [c0, c1, c2] = self.numbers::<3>(0)?;
             let [c3, c4] = self.numbers::<2>(0)?;
             tree.curves.push(Curve { yaw, kind, coefficients: [c0, c1, c2, c3, c4] });
@@ -190,7 +191,7 @@ impl<'a> Deck<'a> {
             let (cell, _) = self.flags(line)?;
             let [begin, end] = self.signed::<2>(line, 8)?;
             let (1.., 1..) = (begin, end) else { return Err(self.wrong(line, "two curves")) };
-            let yaw = self.of_line::<2>(line, 24)?;
+            let yaw = self.of_line(line, 24)?.into();
             tree.cells.push(Cell { yaw, curves: [begin as usize - 1, end as usize - 1], ..cell });
             tree.coefficients.push(self.coefficients(&cell, quantities, YAW_COEFFICIENTS)?);
         }
@@ -218,7 +219,8 @@ impl<'a> Deck<'a> {
         else {
             return Err(self.wrong(line, "four flags"));
         };
-        Ok((Cell { yaw: [0.0; 2], curves: [0; 2], touches: touches == 1, lacks: [left, right] }, begins))
+        let (yaw, curves) = (Interval::of(0.0), [0; 2]);
+        Ok((Cell { yaw, curves, touches: touches == 1, lacks: [left, right] }, begins))
     }
 
     /// Reads the coefficients of a cell, in the order of the table.

@@ -9,13 +9,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::asked::Asked;
-use super::breaks::{Break, Row, kind_of, row};
+use super::breaks::{Break, Row, kind_of, laterals, row};
 use super::cell::{Beginning, INSIDE, YAW_COEFFICIENTS};
-use super::curve::{Curve, node};
+use super::curve::{Curve, between, node};
 use super::fit::{Fit, Fitted, fit};
 use super::quantity::Quantity;
 use super::state::{Sampler, SideTopology, State};
 use crate::error::{Error, ErrorKind, Result, in_order};
+use crate::numerics::interval::Interval;
 use crate::search::WheelsetOnTrack;
 
 /// Rows of a region: at the nodes, and between each two of them.
@@ -98,7 +99,7 @@ impl<'a> Divider<'a> {
     /// The errors of the search; more than [`MOST_CELLS`] over a range of yaws.
     pub fn whole(&self) -> Result<Branch> {
         let Asked { lateral, yaw, .. } = *self.asked;
-        let curves = lateral.map(|y| Curve::constant(y, yaw, Beginning::Edge));
+        let curves = lateral.ends().map(|y| Curve::constant(y, yaw, Beginning::Edge));
         let rows = self.rows(&curves, yaw, [None, None], 0.0)?;
         self.divide(Region { curves, rows, strong: Vec::new() })
     }
@@ -107,20 +108,20 @@ impl<'a> Divider<'a> {
     fn rows(
         &self,
         curves: &[Curve; 2],
-        [from, to]: [f64; 2],
+        yaws: Interval,
         known: [Option<Row>; 2],
         inside: f64,
     ) -> Result<Vec<Row>> {
-        let at = |yaw: f64| self.row_between(curves, yaw, inside, EVERYWHERE);
-        if to - from <= NARROWEST {
-            return Ok(vec![at(from + (to - from) / 2.0)?]);
+        let at = |yaw: f64| self.row_between(curves, yaw, inside, Interval::ALL);
+        if yaws.width() <= NARROWEST {
+            return Ok(vec![at(yaws.at(0.5))?]);
         }
         let [first, last] = known;
         let known = |k: usize| if k == 0 { first.clone() } else { last.clone().filter(|_| k == ROWS - 1) };
         let yaw = |k: usize| match k {
-            0 => from,
-            k if k == ROWS - 1 => to,
-            k => from + (to - from) * (0.5 * (1.0 + node(k, ROWS))),
+            0 => yaws.low,
+            k if k == ROWS - 1 => yaws.high,
+            k => yaws.at(0.5 * (1.0 + node(k, ROWS))),
         };
         in_order((0..ROWS).into_par_iter().map(|k| known(k).map_or_else(|| at(yaw(k)), Ok)))
     }
@@ -183,10 +184,9 @@ impl<'a> Divider<'a> {
         };
         let mut places: Vec<f64> = region.rows.iter().zip(lists).flat_map(of_row).collect();
         places.sort_by(f64::total_cmp);
-        let yaws = || region.rows.iter().map(|row| row.yaw);
-        let from = yaws().map(|yaw| region.curves[0].at(yaw)).fold(f64::NEG_INFINITY, f64::max);
-        let to = yaws().map(|yaw| region.curves[1].at(yaw)).fold(f64::INFINITY, f64::min);
-        let bounds = [&[from - BESIDE], places.as_slice(), &[to + BESIDE]].concat();
+        let rows = region.rows.iter().map(|row| between(&region.curves, row.yaw));
+        let common = rows.fold(Interval::ALL, Interval::cut);
+        let bounds = [&[common.low - BESIDE], places.as_slice(), &[common.high + BESIDE]].concat();
         let wide = bounds.windows(2).filter(|pair| pair[1] - pair[0] > WIDE);
         let at = wide.flat_map(|pair| [pair[0] + BESIDE, pair[1] - BESIDE]);
         let cut = |y: f64| -> Result<Cut> {
@@ -197,7 +197,7 @@ impl<'a> Divider<'a> {
             let breaks = in_order(region.rows.par_iter().map(search))?;
             Ok((breaks, Curve::constant(y, region.yaw(), Beginning::Smooth)))
         };
-        at.filter(|y| *y > from + BESIDE && *y < to - BESIDE).map(cut).collect()
+        at.filter(|y| *y > common.low + BESIDE && *y < common.high - BESIDE).map(cut).collect()
     }
 
     /// Divides a region at a yaw: `ends` are the last row below and the first one above.
@@ -207,8 +207,8 @@ impl<'a> Divider<'a> {
         let [below, above] = ends;
         let at = below.yaw + (above.yaw - below.yaw) / 2.0;
         let part = |ends: [Row; 2]| {
-            let yaw = ends.each_ref().map(|row| row.yaw);
-            let rows = self.rows(&curves, yaw, ends.map(Some), INSIDE)?;
+            let yaws = ends.each_ref().map(|row| row.yaw).into();
+            let rows = self.rows(&curves, yaws, ends.map(Some), INSIDE)?;
             self.divide(Region { curves, rows, strong: strong.clone() })
         };
         let (low, high) = rayon::join(|| part([first, below]), || part([above, last]));
@@ -218,7 +218,7 @@ impl<'a> Divider<'a> {
     /// Divides a region half way between its curves; `middles` are the states there.
     fn in_halves(&self, region: Region, middles: Vec<State>) -> Result<Branch> {
         let yaw = region.yaw();
-        let at = |row: &Row| 0.5 * (region.curves[0].at(row.yaw) + region.curves[1].at(row.yaw));
+        let at = |row: &Row| between(&region.curves, row.yaw).middle();
         let nodes: Vec<f64> = region.rows.iter().step_by(2).map(at).collect();
         let curve = Curve::through(&nodes, yaw, Beginning::Smooth);
         let breaks: Vec<Break> = middles.into_iter().map(|state| [state.clone(), state]).collect();
@@ -239,7 +239,7 @@ impl<'a> Divider<'a> {
             return Ok([middle.clone(), middle]);
         };
         let ends = [k - 1, k].map(|k| region.rows[k].yaw);
-        let (mut yaws, mut sides, mut range) = (ends, [marks(k - 1), marks(k)], EVERYWHERE);
+        let (mut yaws, mut sides, mut range) = (ends, [marks(k - 1), marks(k)], Interval::ALL);
         while yaws[1] - yaws[0] > CROSSING {
             range = narrowed(&mut sides, range);
             let yaw = yaws[0] + (yaws[1] - yaws[0]) / 2.0;
@@ -252,23 +252,19 @@ impl<'a> Divider<'a> {
             // A row that has what no other has, even beside it: half of the yaws have it no more.
             yaws = [ends[0] + (ends[1] - ends[0]) / 2.0; 2];
         }
-        let row = |yaw| self.row_between(&region.curves, yaw, INSIDE, EVERYWHERE);
+        let row = |yaw| self.row_between(&region.curves, yaw, INSIDE, Interval::ALL);
         Ok([row(yaws[0])?, row(yaws[1])?])
     }
 
     /// Looks at a row between two curves, so far inside them, and between two displacements \[mm\].
-    fn row_between(&self, curves: &[Curve; 2], yaw: f64, inside: f64, [from, to]: [f64; 2]) -> Result<Row> {
-        let [low, high] = curves.map(|curve| curve.at(yaw));
-        let inside = inside.min((high - low) / 2.0);
-        row(self.system, self.asked, yaw, [(low + inside).max(from), (high - inside).min(to)])
+    fn row_between(&self, curves: &[Curve; 2], yaw: f64, inside: f64, range: Interval) -> Result<Row> {
+        let all = between(curves, yaw);
+        row(self.system, self.asked, yaw, all.grown(-inside.min(all.width() / 2.0)).cut(range))
     }
 }
 
-/// A break: what changes there, and its two displacements \[mm\].
-type Mark = (Change, [f64; 2]);
-
-/// Where rows are looked at as a whole.
-const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+/// A break: what changes there, and between which displacements \[mm\].
+type Mark = (Change, Interval);
 
 /// Gives what changes at breaks.
 fn changes(marks: &[Mark]) -> impl Iterator<Item = Change> {
@@ -276,28 +272,27 @@ fn changes(marks: &[Mark]) -> impl Iterator<Item = Change> {
 }
 
 /// Narrows a range of displacements \[mm\] to where two rows change otherwise, and leaves out the breaks outside.
-fn narrowed(sides: &mut [Vec<Mark>; 2], range: [f64; 2]) -> [f64; 2] {
-    let from = alike_until(sides).unwrap_or(f64::NEG_INFINITY).max(range[0]);
+fn narrowed(sides: &mut [Vec<Mark>; 2], range: Interval) -> Interval {
+    let low = alike_until(sides).unwrap_or(f64::NEG_INFINITY);
     let behind = alike_until(&sides.each_ref().map(|marks| mirrored(marks)));
-    let to = behind.map_or(f64::INFINITY, |place| -place).min(range[1]);
-    let within = |mark: &&Mark| mark.1[0] > from && mark.1[1] < to;
+    let narrow = Interval::new(low, behind.map_or(f64::INFINITY, |place| -place)).cut(range);
+    let within = |mark: &&Mark| mark.1.low > narrow.low && mark.1.high < narrow.high;
     let inner = sides.each_ref().map(|marks| marks.iter().filter(within).copied().collect::<Vec<_>>());
-    if from >= to || changes(&inner[0]).eq(changes(&inner[1])) {
+    if narrow.low >= narrow.high || changes(&inner[0]).eq(changes(&inner[1])) {
         return range;
     }
     *sides = inner;
-    [from, to]
+    narrow
 }
 
 /// Gives the breaks of a row with these numbers.
 fn marks_of(row: &Row, list: &[usize]) -> Vec<Mark> {
-    let mark = |b: &Break| (change(b), b.each_ref().map(|state| state.lateral));
-    list.iter().map(|&b| mark(&row.breaks[b])).collect()
+    list.iter().map(|&b| &row.breaks[b]).map(|b| (change(b), laterals(b))).collect()
 }
 
 /// Turns the order of breaks round.
 fn mirrored(marks: &[Mark]) -> Vec<Mark> {
-    marks.iter().rev().map(|&(change, [begin, end])| (change, [-end, -begin])).collect()
+    marks.iter().rev().map(|&(change, place)| (change, -place)).collect()
 }
 
 /// Returns a displacement \[mm\] up to which two rows have the same changes, which are all before it in both, and all others behind it;
@@ -305,8 +300,8 @@ fn mirrored(marks: &[Mark]) -> Vec<Mark> {
 fn alike_until([low, high]: &[Vec<Mark>; 2]) -> Option<f64> {
     let same = low.iter().zip(high).take_while(|(a, b)| a.0 == b.0).count();
     (1..=same).rev().find_map(|p| {
-        let before = low[p - 1].1[1].max(high[p - 1].1[1]);
-        let after = [low, high].into_iter().filter_map(|marks| marks.get(p)).map(|mark| mark.1[0]);
+        let before = low[p - 1].1.high.max(high[p - 1].1.high);
+        let after = [low, high].into_iter().filter_map(|marks| marks.get(p)).map(|mark| mark.1.low);
         let after = after.reduce(f64::min)?;
         (before < after).then(|| before + (after - before) / 2.0)
     })
@@ -342,8 +337,8 @@ fn list(row: &Row, strong: &[Change], quantities: &[Quantity]) -> Vec<usize> {
 }
 
 impl Region {
-    fn yaw(&self) -> [f64; 2] {
-        [0, self.rows.len() - 1].map(|k| self.rows[k].yaw)
+    fn yaw(&self) -> Interval {
+        Interval::new(self.rows[0].yaw, self.rows[self.rows.len() - 1].yaw)
     }
 
     /// Adds the changes that jump in any row: they are curves in all.
@@ -437,7 +432,7 @@ impl Region {
 
     /// Fits a curve through the breaks of all rows; gives it with its largest difference from them \[mm\].
     fn curve(&self, breaks: &[Break]) -> (Curve, f64) {
-        let middle = |[before, after]: &Break| before.lateral + (after.lateral - before.lateral) / 2.0;
+        let middle = |b: &Break| laterals(b).at(0.5);
         let kind = breaks.iter().map(kind_of).max().unwrap_or(Beginning::Joint);
         let nodes: Vec<f64> = breaks.iter().step_by(2).map(middle).collect();
         let curve = Curve::through(&nodes, self.yaw(), kind);

@@ -7,6 +7,7 @@ use super::cell::{BREAK, Lacks};
 use super::quantity::{MOST, SideValues, Values, values};
 use crate::error::Result;
 use crate::load::{curvatures_at, quadratic_form_at};
+use crate::numerics::interval::Interval;
 use crate::search::{Contact, Places, Position, Selection, WheelsetOnTrack, WheelsetSearch};
 
 /// Distance \[mm\] below which two places are one.
@@ -92,8 +93,8 @@ impl<'a> Sampler<'a> {
     }
 
     /// Finds where the places of contact of one state give way to those of a later one, by following both, which takes no search.
-    /// Returns the ends of an interval of at most [`BREAK`]; `None` where the same elements touch, or nothing does.
-    pub fn handover(&mut self, from: &State, to: &State) -> Option<[f64; 2]> {
+    /// Returns an interval of at most [`BREAK`]; `None` where the same elements touch, or nothing does.
+    pub fn handover(&mut self, from: &State, to: &State) -> Option<Interval> {
         let (before, after) = (from.lowest?, to.lowest?);
         let differ = [0, 1].map(|k| before.elements()[k] != after.elements()[k]);
         if !differ.contains(&true) {
@@ -116,7 +117,7 @@ impl<'a> Sampler<'a> {
             if holds(middle) { low = middle } else { high = middle }
         }
         // On a joint itself rounding decides which elements touch.
-        Some([(low - BREAK / 4.0).max(from.lateral), (high + BREAK / 4.0).min(to.lateral)])
+        Some(Interval::new(low, high).grown(BREAK / 4.0).cut(Interval::new(from.lateral, to.lateral)))
     }
 
     fn touch(&mut self, lateral: f64, within: f64, near: Option<&Places>) -> Result<State> {

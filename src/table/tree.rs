@@ -5,6 +5,7 @@ use super::cell::{Beginning, Cell};
 use super::curve::Curve;
 use super::quantity::Values;
 use super::region::Branch;
+use crate::numerics::interval::Interval;
 
 /// A part of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,17 +42,17 @@ impl Tree {
     /// Makes the tree of a divided range.
     pub fn of(branch: Branch, about: About) -> Self {
         let mut tree = Self::default();
-        let ends = about.lateral.map(|y| tree.curve(Curve::constant(y, about.yaw, Beginning::Edge)));
+        let ends = about.lateral.ends().map(|y| tree.curve(Curve::constant(y, about.yaw, Beginning::Edge)));
         tree.add(branch, ends);
         tree
     }
 
     /// Makes the tree of a table under one yaw from its cells in ascending order, with their ends \[mm\] and how they begin; without
     /// coefficients.
-    pub fn of_cells(cells: Vec<([f64; 2], Beginning, Cell)>, yaw: [f64; 2]) -> Self {
+    pub fn of_cells(cells: Vec<(Interval, Beginning, Cell)>, yaw: Interval) -> Self {
         let mut tree = Self::default();
-        let last = cells.last().map(|([_, to], ..)| (*to, Beginning::Edge));
-        let begins = cells.iter().map(|([from, _], begins, _)| (*from, *begins));
+        let last = cells.last().map(|(range, ..)| (range.high, Beginning::Edge));
+        let begins = cells.iter().map(|(range, begins, _)| (range.low, *begins));
         for (y, kind) in begins.chain(last) {
             tree.curve(Curve::constant(y, yaw, kind));
         }

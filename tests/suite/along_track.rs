@@ -142,7 +142,7 @@ fn brute(loft: &Loft, wheel: &[[f64; 2]], [offset, ahead]: [f64; 2], at: &Positi
     };
     let mut least = f64::INFINITY;
     for strip in &loft.strips {
-        let [from, to] = strip.reach();
+        let [from, to] = strip.reach().ends();
         for step in -240..=240 {
             // A wheel may touch where a part begins or ends.
             let y = (along + 0.25 * f64::from(step)).clamp(from, to);
@@ -271,7 +271,7 @@ fn a_list_without_features_ends_where_its_slices_do_not_correspond() -> Result<(
     let list = slices(&[0.0, 50.0, 100.0, 150.0], |y| head(if y < 75.0 { 0.0 } else { 30.0 }, 0.0));
     let loft = Loft::new(&list, Joining::Monotone)?;
     assert_eq!(
-        loft.strips.iter().map(wheelrail::lofted::Strip::reach).collect::<Vec<_>>(),
+        loft.strips.iter().map(|strip| strip.reach().ends()).collect::<Vec<_>>(),
         [[0.0, 50.0], [100.0, 150.0]]
     );
     assert_eq!(loft.warnings.len(), 1);

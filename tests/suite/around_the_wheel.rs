@@ -30,7 +30,7 @@ pub(super) fn turning(wheel: &LoftedWheel, rail: &Profile, position: Position, w
     let axle = Wheelset::new(WheelDistance::Spacing(SPACING), RADIUS)?;
     let side = SideOnTrack::lofted(pair, Track::new(rail, RailDistance::Spacing(SPACING))?, axle);
     let selection = Selection { within, apart: ONE_CONTACT };
-    let reach = [f64::NEG_INFINITY, f64::INFINITY];
+    let reach = wheelrail::Interval::ALL;
     Ok(March { system: WheelsetOnTrack::symmetrical(side), position, selection, reach, pitch: 0.0 })
 }
 

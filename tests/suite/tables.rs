@@ -94,7 +94,7 @@ fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
     let mut values = vec![0.0; quantities.len()];
     let mut shares = vec![0.0_f64; quantities.len()];
     let mut exist = 0;
-    for [lateral, yaw] in random(table.about().lateral, table.about().yaw) {
+    for [lateral, yaw] in random(table.about().lateral.ends(), table.about().yaw.ends()) {
         table.fill(lateral, yaw, &mut values);
         let at = Position { lateral, yaw, ..*position };
         let touch = search.touch(&at, &Selection { within: 0.0, apart: 0.0 })?;
@@ -183,7 +183,7 @@ fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
                 let made = table(&case, RANGE, yaw, 1e-3, true)?;
                 let numbers: Vec<usize> = (0..made.quantities().len()).rev().collect();
                 let mut all = vec![0.0; numbers.len() * lateral.len()];
-                let yaws = if yaw.is_some() { yaws.as_slice() } else { &made.about().yaw[..1] };
+                let yaws = if yaw.is_some() { yaws.as_slice() } else { &made.about().yaw.ends()[..1] };
                 made.fill_many(&lateral, yaws, &numbers, &mut all);
                 let mut row = vec![0.0; numbers.len()];
                 for (k, y) in lateral.iter().enumerate() {

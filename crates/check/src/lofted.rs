@@ -228,7 +228,7 @@ impl<'a> MeshedLoft<'a> {
         let mut made = Self { lofted, axes, origin, radius, meshes: Vec::new(), size };
         let (window, middle) = (request.window, lofted.along());
         for (strip, own) in lofted.loft().strips.iter().enumerate() {
-            let [first, last] = own.reach();
+            let [first, last] = own.reach().ends();
             let [from, to] =
                 [window.eta[0] - MARGIN, window.eta[1] + MARGIN].map(|eta| (middle + eta).clamp(first, last));
             if from >= to {
@@ -341,14 +341,14 @@ impl<'a> MeshedLoft<'a> {
             (place, zeta) = (parameters([&u, &y], &hit), hit.point.z);
             share *= CLOSER;
         }
-        let [first, last] = strip.reach();
+        let [first, last] = strip.reach().ends();
         let inside = |at: f64, [from, to]: [f64; 2], least: f64| at > from + least && at < to - least;
         let own = inside(place[0], [0.0, strip.cells() as f64], NORMAL_CELL);
         if !(own && inside(place[1], [first, last], NORMAL_CELL * ALONG)) {
             return Met::Steep;
         }
         let own = inside(place[0].fract(), [0.0, 1.0], NORMAL_CELL);
-        let smooth = own && inside(place[1], strip.interval_at(place[1]).y(), NORMAL_CELL * ALONG);
+        let smooth = own && inside(place[1], strip.bay_at(place[1]).y().ends(), NORMAL_CELL * ALONG);
         let direction = |share: f64| {
             let [h, k] = [NORMAL_CELL * share, NORMAL_CELL * ALONG * share];
             let corner = |a: f64, b: f64| self.point(strip, place[0] + a * h, place[1] + b * k);

@@ -69,7 +69,7 @@ fn range(flag: &str, text: &str, expected: &str, example: &str) -> Result<[f64; 
 
 /// Says what is in the table.
 fn about(table: &ContactTable) -> String {
-    let middle = table.about().yaw[0] + (table.about().yaw[1] - table.about().yaw[0]) / 2.0;
+    let middle = table.about().yaw.at(0.5);
     let [hops, joints] = [(Beginning::Hop, "hop"), (Beginning::Joint, "joint")]
         .map(|(kind, name)| counted(table.places(kind, middle).len(), name));
     let under =
@@ -88,9 +88,10 @@ fn about(table: &ContactTable) -> String {
 /// Says what a user should know before using the table.
 fn remarks(table: &ContactTable) -> Vec<String> {
     let under = if table.about().over_yaw() { " under some yaws" } else { "" };
-    let missing = table.off_rail_somewhere().into_iter().map(|[from, to]| {
+    let missing = table.off_rail_somewhere().into_iter().map(|off| {
         format!(
-            "no contact from {from} to {to} mm{under}: a wheel is off its rail, and the table has nothing there"
+            "no contact from {} to {} mm{under}: a wheel is off its rail, and the table has nothing there",
+            off.low, off.high
         )
     });
     let over =

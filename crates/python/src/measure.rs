@@ -176,8 +176,8 @@ pub(crate) fn average_profiles<'py>(
         ("x_mm", |point| point.at[0]),
         ("z_mm", |point| point.at[1]),
         ("spread_mm", |point| point.spread),
-        ("least_mm", |point| point.range[0]),
-        ("largest_mm", |point| point.range[1]),
+        ("least_mm", |point| point.range.low),
+        ("largest_mm", |point| point.range.high),
     ];
     for (name, of) in columns {
         out.set_item(name, PyArray1::from_iter(py, average.points.iter().map(of)))?;

@@ -147,13 +147,13 @@ impl ContactTable {
     /// The range of the lateral displacement in mm.
     #[getter]
     fn lateral(&self) -> (f64, f64) {
-        self.table.about().lateral.into()
+        self.table.about().lateral.ends().into()
     }
 
     /// The range of the yaw in rad; both ends are equal where all displacements have one yaw.
     #[getter]
     fn yaw(&self) -> (f64, f64) {
-        self.table.about().yaw.into()
+        self.table.about().yaw.ends().into()
     }
 
     /// The distance in mm from hops, joints and edges within which the table may give the values of their other side.
@@ -166,7 +166,7 @@ impl ContactTable {
     /// nothing there.
     #[pyo3(signature = (yaw = None))]
     fn off_rail(&self, yaw: Option<f64>) -> PyResult<Vec<(f64, f64)>> {
-        Ok(self.table.off_rail(self.one_yaw(yaw)?).into_iter().map(Into::into).collect())
+        Ok(self.table.off_rail(self.one_yaw(yaw)?).into_iter().map(|off| off.ends().into()).collect())
     }
 
     /// The lateral displacements in mm at which contact hops to another place under a yaw in rad.
@@ -182,7 +182,7 @@ impl ContactTable {
     }
 
     fn __repr__(&self) -> String {
-        let [from, to] = self.table.about().lateral;
+        let [from, to] = self.table.about().lateral.ends();
         format!("ContactTable of {} cells from {from} to {to} mm", self.table.cells().len())
     }
 }
@@ -205,7 +205,7 @@ impl ContactTable {
             },
             Some(all) => {
                 all.iter().try_for_each(|yaw| self.one_yaw(Some(*yaw)).map(drop))?;
-                Ok(vec![about.yaw[0]])
+                Ok(vec![about.yaw.low])
             }
             None => Ok(vec![self.one_yaw(None)?]),
         }
@@ -219,12 +219,12 @@ impl ContactTable {
                 let (expected, advice) = ("a yaw in rad", "the table is over yaw: give one");
                 Err(exception(Error::new("yaw", "none", expected, advice)))
             }
-            Some(yaw) if !about.over_yaw() && yaw != about.yaw[0] => {
-                let expected = format!("{} rad, the yaw of the table", about.yaw[0]);
+            Some(yaw) if !about.over_yaw() && yaw != about.yaw.low => {
+                let expected = format!("{} rad, the yaw of the table", about.yaw.low);
                 let advice = "make a table with this yaw";
                 Err(exception(Error::new("yaw", yaw.to_string(), expected, advice)))
             }
-            yaw => Ok(yaw.unwrap_or(about.yaw[0])),
+            yaw => Ok(yaw.unwrap_or(about.yaw.low)),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::super::model::plain;
 use super::text::line;
+use crate::numerics::interval::Interval;
 use crate::table::{COEFFICIENTS, ContactTable, Lacks, Part, TOLERANCE_LENGTH, YAW_COEFFICIENTS};
 
 /// Writes `table.wrp`; `title` is that of its scene.
@@ -14,13 +15,13 @@ pub fn table_wrp(table: &ContactTable, title: &str) -> String {
     text += &format!("{:>8}{:>8}{:>8}", cells.len(), quantities.len(), COEFFICIENTS);
     if over_yaw {
         text += &format!("{:>8}{:>8}{:>8}\n", YAW_COEFFICIENTS, table.curves().len(), table.forks().len());
-        text += &line(&about.lateral);
-        text += &line(&about.yaw);
+        text += &line(&about.lateral.ends());
+        text += &line(&about.yaw.ends());
         text += &line(&[about.radius, about.tolerance, about.beside_curves()]);
     } else {
         text += "\n";
-        text += &line(&about.lateral);
-        text += &line(&[about.yaw[0], about.radius, about.tolerance]);
+        text += &line(&about.lateral.ends());
+        text += &line(&[about.yaw.low, about.radius, about.tolerance]);
     }
     for quantity in quantities {
         text += &format!("{:<18}{:>2} {:<8}", quantity.name, quantity.needs.code(), quantity.side());
@@ -35,9 +36,9 @@ pub fn table_wrp(table: &ContactTable, title: &str) -> String {
         if over_yaw {
             let [begin, end] = cell.curves.map(|curve| curve + 1);
             text += &format!("{begin:>8}{end:>8}");
-            text += &line(&cell.yaw);
+            text += &line(&cell.yaw.ends());
         } else {
-            text += &line(&table.ends(c, about.yaw[0]));
+            text += &line(&table.ends(c, about.yaw.low).ends());
         }
         if !cell.touches {
             continue;
@@ -56,7 +57,7 @@ pub fn table_wrp(table: &ContactTable, title: &str) -> String {
 fn put_tree(text: &mut String, table: &ContactTable) {
     for curve in table.curves() {
         *text += &format!("{:>8}", curve.kind.code());
-        *text += &line(&curve.yaw);
+        *text += &line(&curve.yaw.ends());
         curve.coefficients.chunks(3).for_each(|three| *text += &line(three));
     }
     for fork in table.forks() {
@@ -76,7 +77,7 @@ fn put_tree(text: &mut String, table: &ContactTable) {
 fn comments(table: &ContactTable, title: &str) -> Vec<String> {
     let about = table.about();
     let under = if about.over_yaw() { " under some yaws" } else { "" };
-    let off = |[from, to]: [f64; 2]| format!("off the rail, without values{under}: {from} to {to}");
+    let off = |off: Interval| format!("off the rail, without values{under}: {} to {}", off.low, off.high);
     let off = table.off_rail_somewhere().into_iter().map(off);
     let before = [
         format!("title: {title}"),

@@ -103,7 +103,7 @@ impl<'a> Varying<'a> {
         let eta = window.eta.cut(self.within());
         let reach = match self.level.normal_gap() {
             Some(gap) => gap.rail().reach(),
-            None => placement.lofted().and_then(|body| body.reach(eta.into()).map(Interval::from)),
+            None => placement.lofted().and_then(|body| body.reach(eta)),
         };
         let over = reach.map(|reach| window.xi.cut(reach));
         let Some(xi) = over.filter(|xi| xi.width() > 0.0 && eta.width() > 0.0) else { return Vec::new() };

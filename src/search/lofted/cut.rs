@@ -58,7 +58,7 @@ fn pieces(loft: &Loft, point: impl Fn(Line<'_>) -> Option<[f64; 2]>) -> Vec<Vec<
         for node in 0..=cells {
             let share = node as f64 / cells as f64;
             let line = |y: f64| {
-                let strip = strips.iter().find(|strip| (strip.reach()[0]..=strip.reach()[1]).contains(&y))?;
+                let strip = strips.iter().find(|strip| strip.holds(y))?;
                 Some(strip.point(share * strip.cells() as f64, y).at)
             };
             let Some(at) = point(&line) else {

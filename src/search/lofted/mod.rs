@@ -23,6 +23,7 @@ use super::over_rail::Work;
 use super::touch::{Contact, Pose, Selection, Touch};
 use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftedBody, LoftedWheel, Strip, turned};
+use crate::numerics::interval::Interval;
 use crate::placement::Pair;
 use crate::profile::{Profile, Section, Side};
 use above::{SweptAbove, Varying};
@@ -281,20 +282,20 @@ impl<'a> LoftedSearch<'a> {
         Some(candidate(&over, &lowest))
     }
 
-    /// Opens all intervals of the varying body that lie below the other one.
+    /// Opens all bays of the varying body that lie below the other one.
     fn open(&mut self, over: &SweptAbove<'_>, lowest: &mut f64, within: f64) {
         let pair = self.pair;
         let (ahead, far) = match pair.varying {
             Varying::Rail => (over.attitude.along, pair.radius),
             Varying::Wheel => (0.0, WINDOW * pair.radius),
         };
-        let reach = [self.along - far, self.along + far].map(|y| y + ahead);
+        let reach = Interval::of(self.along).grown(far) + ahead;
         for (strip, own) in pair.loft.strips.iter().enumerate() {
-            for interval in own.intervals() {
-                let [from, to] = interval.y();
-                let y = [from.max(reach[0]), to.min(reach[1])];
-                if y[0] < y[1] {
-                    let part = Part { strip, interval: interval.index(), node: 1, shares: [0.0, 1.0], y };
+            for bay in own.bays() {
+                let y = bay.y().cut(reach);
+                if y.low < y.high {
+                    let shares = Interval::new(0.0, 1.0);
+                    let part = Part { strip, bay: bay.index(), node: 1, shares, y };
                     self.add(over, part, 0, lowest, within);
                 }
             }
@@ -304,7 +305,7 @@ impl<'a> LoftedSearch<'a> {
     /// Adds a part of the varying body against a node of the other.
     fn add(&mut self, over: &SweptAbove<'_>, part: Part, node: usize, lowest: &mut f64, within: f64) {
         let loft = &self.pair.loft;
-        if part.interval(loft).cells(part.node).is_empty() {
+        if part.bay(loft).cells(part.node).is_empty() {
             return;
         }
         if part.cell(loft).is_some() {
@@ -362,7 +363,7 @@ impl<'a> LoftedSearch<'a> {
     fn goes_on(&self, over: &SweptAbove<'_>, strip: usize, settled: &Settled) -> bool {
         let strips = &self.pair.loft.strips;
         let (own, [u, y]) = (&strips[strip], settled.place);
-        let (left, first) = (u <= 0.0, y <= own.reach()[0]);
+        let (left, first) = (u <= 0.0, y <= own.reach().low);
         let smaller = |other: &Strip, place: [f64; 2], axis: usize, back: bool| {
             let gap = Gap { strip: other, over, along: self.along };
             gap.at(place).is_some_and(|(below, above)| {
@@ -372,14 +373,14 @@ impl<'a> LoftedSearch<'a> {
             })
         };
         strips.iter().any(|other| {
-            let [from, to] = other.reach();
+            let reach = other.reach();
             let beside = if left { other.part + 1 == own.part } else { other.part == own.part + 1 };
             let cells = other.cells() as f64;
             let across = settled.at_end[0]
                 && beside
-                && (from..=to).contains(&y)
+                && reach.contains(y)
                 && smaller(other, [if left { cells } else { 0.0 }, y], 0, left);
-            let next = other.part == own.part && y == if first { to } else { from };
+            let next = other.part == own.part && y == if first { reach.high } else { reach.low };
             let ahead = [u * (cells / own.cells() as f64), y];
             across || (settled.at_end[1] && next && smaller(other, ahead, 1, first))
         })

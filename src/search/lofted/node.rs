@@ -1,8 +1,8 @@
 //! Parts of a lofted body with their control points, and lower bounds of the gap over them.
 
 use super::above::{SweptAbove, Varying};
-use crate::lofted::{Interval, Loft, directions, on_wheel};
-use crate::numerics::interval::product;
+use crate::lofted::{Bay, Loft, directions, on_wheel};
+use crate::numerics::interval::Interval;
 use crate::search::bounds::Bounds;
 
 /// Change \[mm\] of x and z across and along of a part from which Newton's method starts.
@@ -29,14 +29,14 @@ const LEVEL: f64 = 1e-12;
 pub(super) struct Part {
     /// Index of the strip.
     pub strip: usize,
-    /// Index of the interval between two slices.
-    pub interval: usize,
-    /// Node of the interval's tree.
+    /// Index of the bay between two slices.
+    pub bay: usize,
+    /// Node of the bay's tree.
     pub node: usize,
     /// Shares of the cell across; \[0, 1\] of a node with several cells.
-    pub shares: [f64; 2],
+    pub shares: Interval,
     /// Interval of y in the list's coordinate \[mm\].
-    pub y: [f64; 2],
+    pub y: Interval,
 }
 
 /// A part with what bounds it, in the swept body's axes.
@@ -48,9 +48,9 @@ pub(super) struct BoundPart {
     /// How many there are.
     count: usize,
     /// Reach of the abscissa at which vertical lines through the part meet the level of the swept profile \[mm\].
-    abscissa: [f64; 2],
+    abscissa: Interval,
     /// Reach of y \[mm\].
-    along: [f64; 2],
+    along: Interval,
     /// Larger extent of x or z \[mm\].
     pub size: f64,
     /// Change of x or z across and along, as multiples of those of a small part.
@@ -77,40 +77,40 @@ struct Wrap {
 }
 
 impl Part {
-    pub fn interval<'a>(&self, loft: &'a Loft) -> Interval<'a> {
-        loft.strips[self.strip].interval(self.interval)
+    pub fn bay<'a>(&self, loft: &'a Loft) -> Bay<'a> {
+        loft.strips[self.strip].bay(self.bay)
     }
 
     /// The cell, of a part of one.
     pub fn cell(&self, loft: &Loft) -> Option<usize> {
-        self.interval(loft).only_cell(self.node)
+        self.bay(loft).only_cell(self.node)
     }
 
     /// Parameters (u, y) of its middle.
     pub fn middle(&self, loft: &Loft) -> [f64; 2] {
-        let y = 0.5 * (self.y[0] + self.y[1]);
         let u = match self.cell(loft) {
-            Some(cell) => cell as f64 + 0.5 * (self.shares[0] + self.shares[1]),
+            Some(cell) => cell as f64 + self.shares.middle(),
             None => {
-                let cells = self.interval(loft).cells(self.node);
+                let cells = self.bay(loft).cells(self.node);
                 0.5 * (cells.start + cells.end) as f64
             }
         };
-        [u, y]
+        [u, self.y.middle()]
     }
 
     /// Makes its bounds under a swept body; the middle of the axle is over `along` \[mm\] of the surface.
     pub fn bound(self, loft: &Loft, over: &SweptAbove<'_>, along: f64) -> BoundPart {
-        let interval = self.interval(loft);
+        let bay = self.bay(loft);
         let (mut points, mut count) = ([[0.0; 3]; 16], 8);
         if let Some(cell) = self.cell(loft) {
-            let control = interval.cell(cell).control(self.shares, self.y);
+            let control = bay.cell(cell).control(self.shares, self.y);
             points.iter_mut().zip(control.iter().flatten()).for_each(|(own, at)| *own = *at);
             count = 16;
         } else {
-            let [x, z] = interval.bounds(self.node);
+            let [x, z] = bay.bounds(self.node).map(Interval::ends);
+            let y = self.y.ends();
             for (k, point) in points.iter_mut().take(count).enumerate() {
-                *point = [x[k & 1], self.y[k >> 1 & 1], z[k >> 2]];
+                *point = [x[k & 1], y[k >> 1 & 1], z[k >> 2]];
             }
         }
         let wrap = match over.varying {
@@ -123,23 +123,21 @@ impl Part {
                 Some(self.wrap(&mut points[..count], over, along).wider(off))
             }
         };
-        let mut low = [f64::INFINITY; 4];
-        let mut high = [f64::NEG_INFINITY; 4];
+        let mut reach = [Interval::NONE; 4];
         for point in points.iter_mut().take(count) {
             *point = over.seen(*point);
             let [x, y, z] = *point;
             let reached = [x, y, z, x - over.up[0] / over.up[2] * z];
-            for k in 0..4 {
-                (low[k], high[k]) = (low[k].min(reached[k]), high[k].max(reached[k]));
-            }
+            reach.iter_mut().zip(reached).for_each(|(reach, at)| *reach = reach.with(at));
         }
+        let [x, along, z, abscissa] = reach;
         let size = match wrap {
             // A long part of a wheel is high for its length.
             Some(wrap) if count == 8 => wrap.size,
-            _ => (high[0] - low[0]).max(high[2] - low[2]),
+            _ => x.width().max(z.width()),
         };
         let inward = wrap.map_or(0.0, |wrap| wrap.inward + wrap.around);
-        let length = self.y[1] - self.y[0];
+        let length = self.y.width();
         let change = |step: usize, other: usize| {
             let lines = (0..4).flat_map(|line| (1..4).map(move |k| (other * line, other * line + k * step)));
             let far = |(a, b): (usize, usize)| {
@@ -156,8 +154,8 @@ impl Part {
             part: self,
             points,
             count,
-            abscissa: [low[3] - inward, high[3] + inward],
-            along: [low[1], high[1]],
+            abscissa: abscissa.grown(inward),
+            along,
             size,
             changes,
             wrap,
@@ -171,19 +169,14 @@ impl Part {
     /// by |ϱ sin d − ϱ_m d| along it. Corners of a box stand around the whole sector.
     fn wrap(&self, points: &mut [[f64; 3]], over: &SweptAbove<'_>, along: f64) -> Wrap {
         let radius = over.attitude.radius;
-        let [from, to] = self.y;
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from) / radius);
+        let (middle, half) = (self.y.middle(), 0.5 * self.y.width() / radius);
         let angle = (middle - along) / radius;
-        let (mut x, mut h) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
-        for point in points.iter() {
-            x = [x[0].min(point[0]), x[1].max(point[0])];
-            h = [h[0].min(point[2]), h[1].max(point[2])];
-        }
-        let (farthest, between) = (radius + h[1], 0.5 * (h[1] - h[0]));
+        let [x, h] = [0, 2].map(|axis| Interval::around(points.iter().map(|point| point[axis])));
+        let (farthest, between) = (radius + h.high, 0.5 * h.width());
         let [out, _] = directions(angle);
         let mut wrap = Wrap {
             out: over.turned(out),
-            size: (x[1] - x[0]).max(h[1] - h[0]),
+            size: x.width().max(h.width()),
             around: 0.0,
             inward: 0.0,
             turns: [0.0; 2],
@@ -193,22 +186,22 @@ impl Part {
                 let pairs = (0..4).flat_map(|line| (0..3).map(move |k| other * line + step * k));
                 pairs.map(|at| (points[at + step][2] - points[at][2]).abs()).fold(0.0, f64::max)
             };
-            let third = (to - from) / 3.0;
+            let third = self.y.width() / 3.0;
             wrap.around = half * (between + farthest * half * half / 6.0);
             wrap.inward = 0.5 * farthest * half * half;
             wrap.turns = [
                 half * largest(4, 1),
                 half * (largest(1, 4) + third * farthest / radius) + third * between / radius,
             ];
-            let mean = radius + h[0] + between;
+            let mean = radius + h.low + between;
             for point in points.iter_mut() {
                 *point = on_wheel(radius, angle, [point[0], point[2], mean * (point[1] - middle) / radius]);
             }
         } else {
             let (sin, cos) = half.sin_cos();
             for point in points.iter_mut() {
-                let inner = (radius + h[0]) * cos - radius;
-                let height = if point[2] == h[1] { h[1] } else { inner };
+                let inner = (radius + h.low) * cos - radius;
+                let height = if point[2] == h.high { h.high } else { inner };
                 *point =
                     on_wheel(radius, angle, [point[0], height, (farthest * sin).copysign(point[1] - middle)]);
             }
@@ -233,49 +226,45 @@ impl BoundPart {
 
     /// Halves the part where it changes most.
     pub fn halves(&self, loft: &Loft) -> [Part; 2] {
-        let Part { y: [from, to], shares: [first, last], node, .. } = self.part;
-        let with = |y: [f64; 2], shares: [f64; 2], node: usize| Part { y, shares, node, ..self.part };
+        let Part { y, shares, node, .. } = self.part;
         if self.changes[1] > self.changes[0] {
-            let middle = 0.5 * (from + to);
-            return [[from, middle], [middle, to]].map(|y| with(y, [first, last], node));
+            return y.split(y.middle()).map(|y| Part { y, ..self.part });
         }
         if self.part.cell(loft).is_none() {
-            return [0, 1].map(|k| with([from, to], [first, last], 2 * node + k));
+            return [0, 1].map(|k| Part { node: 2 * node + k, ..self.part });
         }
-        let middle = 0.5 * (first + last);
-        [[first, middle], [middle, last]].map(|shares| with([from, to], shares, node))
+        shares.split(shares.middle()).map(|shares| Part { shares, ..self.part })
     }
 
     /// Tells whether the gap over the part may be least there or level: whether the surfaces of both bodies may be parallel across and
     /// along the track. Where they cannot, the gap is least at the part's edge, which counts at an end of the strip only.
     pub fn may_be_level(&self, loft: &Loft, over: &SweptAbove<'_>, of: &Bounds) -> bool {
         let Some(cell) = self.part.cell(loft) else { return true };
-        let (least, most) = (over.radius - of.z[1], over.radius - of.z[0]);
-        let farthest = self.along[0].abs().max(self.along[1].abs());
+        let (least, most) = (over.radius - of.z.high, over.radius - of.z.low);
+        let farthest = self.along.magnitude();
         if farthest >= least {
             return true;
         }
         let down = ((least - farthest) * (least + farthest)).sqrt();
-        let across = product(of.tangent, [1.0, if least == f64::INFINITY { 1.0 } else { least / down }]);
-        let along = product(self.along, [most.recip(), down.recip()]);
+        let across = of.tangent * Interval::new(1.0, if least == f64::INFINITY { 1.0 } else { least / down });
+        let along = self.along * Interval::new(most.recip(), down.recip());
         let strip = &loft.strips[self.part.strip];
-        let ([first, last], [from, to], reach) = (self.part.shares, self.part.y, strip.reach());
+        let (Part { shares, y, .. }, reach) = (self.part, strip.reach());
         let ends = [
-            [cell == 0 && first == 0.0, cell + 1 == strip.cells() && last == 1.0],
-            [from == reach[0], to == reach[1]],
+            [cell == 0 && shares.low == 0.0, cell + 1 == strip.cells() && shares.high == 1.0],
+            [y.low == reach.low, y.high == reach.high],
         ];
-        let steepest = [across, along].map(|slopes| slopes[0].abs().max(slopes[1].abs()));
+        let steepest = [across, along].map(Interval::magnitude);
         let off =
             self.wrap.map_or([0.0; 2], |wrap| wrap.turns.map(|by| by * (1.0 + steepest[0] + steepest[1])));
         [(4, 1), (1, 4)].into_iter().zip(ends).zip(off).all(|(((step, other), [at_first, at_last]), off)| {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let mut rise = Interval::NONE;
             for (line, k) in (0..4).flat_map(|line| (0..3).map(move |k| (line, k))) {
                 let at = other * line + step * k;
                 let v = [0, 1, 2].map(|axis| self.points[at + step][axis] - self.points[at][axis]);
-                let [a, b] = [product(across, [v[0]; 2]), product(along, [v[1]; 2])];
-                (low, high) = (low.min(a[0] + b[0] - v[2]), high.max(a[1] + b[1] - v[2]));
+                rise = rise.hull(across * Interval::of(v[0]) + along * Interval::of(v[1]) + -v[2]);
             }
-            (low <= LEVEL + off || at_first) && (high >= -LEVEL - off || at_last)
+            (rise.low <= LEVEL + off || at_first) && (rise.high >= -LEVEL - off || at_last)
         })
     }
 
@@ -287,9 +276,9 @@ impl BoundPart {
     pub fn gap_below(&self, over: &SweptAbove<'_>, of: &Bounds) -> f64 {
         let radius = over.radius;
         let tilt = over.up[0] / over.up[2];
-        let farthest = self.along[0].abs().max(self.along[1].abs());
+        let farthest = self.along.magnitude();
         // The profile's part is carried up where the ring rises.
-        let least = radius - of.z[1];
+        let least = radius - of.z.high;
         let rise = if tilt == 0.0 {
             0.0
         } else if farthest < least {
@@ -297,14 +286,13 @@ impl BoundPart {
         } else {
             least.max(0.0)
         };
-        let shifts = [tilt * of.z[0], tilt * (of.z[1] + rise)];
-        let reach = [of.x[0] - shifts[0].max(shifts[1]), of.x[1] - shifts[0].min(shifts[1])];
-        if reach[0] > self.abscissa[1] || reach[1] < self.abscissa[0] {
+        let shift = Interval::between(tilt * of.z.low, tilt * (of.z.high + rise));
+        if !(of.x + -shift).meets(self.abscissa) {
             return f64::INFINITY;
         }
-        let [from, to] = self.along;
-        let y = if to - from > FAR { 0f64.clamp(from, to) } else { 0.5 * (from + to) };
-        let sine = (y / (radius - of.z[0])).clamp(-1.0, 1.0);
+        let along = self.along;
+        let y = if along.width() > FAR { 0f64.clamp(along.low, along.high) } else { along.middle() };
+        let sine = (y / (radius - of.z.low)).clamp(-1.0, 1.0);
         let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
         let [cos, sin] = of.chord;
         // The part of a wheel has to face the plane.
@@ -313,7 +301,7 @@ impl BoundPart {
         };
         let steep =
             cos * cosine * over.up[2] - sin * over.up[0] < STEEPEST || outward([-sin, 0.0, cos]) < 0.0;
-        let (cos, sin, level) = if steep { (1.0, 0.0, of.z[0]) } else { (cos, sin, of.level) };
+        let (cos, sin, level) = if steep { (1.0, 0.0, of.z.low) } else { (cos, sin, of.level) };
         let normal = [-sin, -cos * sine, cos * cosine];
         let rate: f64 = (0..3).map(|k| normal[k] * over.up[k]).sum();
         if rate < STEEPEST || outward(normal) < 0.0 {

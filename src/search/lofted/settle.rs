@@ -2,6 +2,7 @@
 
 use super::above::{Above, SweptAbove};
 use crate::lofted::{SPACING, SpacePoint, Strip};
+use crate::numerics::interval::Interval;
 
 /// Most steps. Newton's method takes four to six from a place within a tenth of a millimetre.
 const STEPS: usize = 40;
@@ -79,15 +80,15 @@ impl Gap<'_> {
     /// Follows the gap down to its least value near a place; `None` where the swept body does not reach. Steps that do not settle end at
     /// the lowest place that they reached, as at a kink.
     pub fn settle(&self, from: [f64; 2]) -> Option<Settled> {
-        let ends = [[0.0, self.strip.cells() as f64], self.strip.reach()];
+        let ends = [Interval::new(0.0, self.strip.cells() as f64), self.strip.reach()];
         let mut place = from;
         let (mut below, mut above) = self.at(place)?;
         let rounding = self.over.rounding();
         for _ in 0..STEPS {
             let (gradient, bends) = self.derivatives(&below, &above);
             let held = [0, 1].map(|k| {
-                (place[k] <= ends[k][0] && gradient[k] >= 0.0)
-                    || (place[k] >= ends[k][1] && gradient[k] <= 0.0)
+                (place[k] <= ends[k].low && gradient[k] >= 0.0)
+                    || (place[k] >= ends[k].high && gradient[k] <= 0.0)
             });
             let level = self.level(gradient, bends);
             let step = descent(gradient, bends, [0, 1].map(|k| held[k] || level[k]));
@@ -99,7 +100,7 @@ impl Gap<'_> {
             let lower = |step: [f64; 2]| {
                 let mut share = (0..2).map(|k| LONGEST[k] / step[k].abs()).fold(1.0, f64::min);
                 for _ in 0..HALVINGS {
-                    let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k][0], ends[k][1]));
+                    let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(ends[k].low, ends[k].high));
                     let reached = self.at(next).filter(|(_, to)| to.gap < above.gap + rounding);
                     if let Some((from, to)) = reached {
                         return Some((next, from, to));
@@ -122,7 +123,7 @@ impl Gap<'_> {
     /// Moves a place on a stretch with one gap to the strip's beginning, if that has the same gap: whatever part of a flat Newton's method
     /// started from, it ends at one place.
     fn at_beginning(&self, mut settled: Settled, level: [bool; 2]) -> Settled {
-        let begin = [0.0, self.strip.reach()[0]];
+        let begin = [0.0, self.strip.reach().low];
         for k in (0..2).filter(|&k| level[k]) {
             let mut place = settled.place;
             place[k] = begin[k];

@@ -35,6 +35,7 @@ use movement::{Movement, Quarter};
 use refine::{LEAST_AMPLITUDE, Table, most_searches};
 
 use crate::error::{Error, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::last_where;
 use crate::search::position::Roll;
 use crate::search::wheelset::WheelsetOnTrack;
@@ -259,7 +260,7 @@ impl Conicity {
             let movement = Movement::new(table.knots());
             let fits: Vec<_> = (0..movement.cells()).map(|cell| Fit::new(&movement, cell)).collect();
             let [searches, most] = table.searches();
-            let served = |cell: usize| movement.ends(cell)[1] > LEAST_AMPLITUDE;
+            let served = |cell: usize| movement.ends(cell).high > LEAST_AMPLITUDE;
             let fine = |fit: &Fit| 2.0 * fit.error <= ACCURACY;
             let converged =
                 fits.iter().enumerate().all(|(cell, fit)| !served(cell) || fit.as_ref().is_none_or(fine));
@@ -284,18 +285,18 @@ impl Swing {
 }
 
 /// Returns the square root of the share of a cell that lies below y.
-fn share([from, to]: [f64; 2], y: f64) -> f64 {
-    ((y - from) / (to - from)).sqrt()
+fn share(cell: Interval, y: f64) -> f64 {
+    ((y - cell.low) / cell.width()).sqrt()
 }
 
 impl Fit {
     /// Fits T over a cell; `None` over a jump, and where T is no smooth function of s: close to where the
     /// movement does not come back.
     fn new(movement: &Movement, cell: usize) -> Option<Self> {
-        let [from, to] = movement.ends(cell);
+        let ends = movement.ends(cell);
         let at = |s: f64| {
-            let y = from + (to - from) * s * s;
-            (y > from).then(|| movement.quarter(cell, y)).flatten()
+            let y = ends.low + ends.width() * s * s;
+            (y > ends.low).then(|| movement.quarter(cell, y)).flatten()
         };
         let (mut differences, mut error) = ([0.0; POINTS.len()], 0f64);
         for (value, s) in differences.iter_mut().zip(POINTS) {

@@ -1,6 +1,7 @@
 //! Tests the search against dense sampling in three dimensions, which uses neither outlines nor normals.
 
 use super::*;
+use crate::numerics::interval::Interval;
 use nalgebra::{Point3, UnitComplex, Vector3};
 use wheelrail_report::random::Random;
 
@@ -45,40 +46,32 @@ impl RandomScene {
     fn lowest_gap(&self) -> [f64; 3] {
         let rail = Section::own_axes(&self.rail, Side::Rail);
         let wheel = Section::own_axes(&self.wheel, Side::Wheel);
-        let reach = wheel.reach().unwrap_or_default();
+        let reach = Interval::from(wheel.reach().unwrap_or_default());
         let gap = |x: f64, omega: f64| {
             let [px, py, pz] = self.point(&wheel, x, omega);
             let height = self.lower(rail.height(px), py);
             if height.is_nan() { f64::INFINITY } else { pz - height }
         };
-        let widest = 0.3;
-        let mut cells = best_cells(&gap, reach, [-widest, widest], [700, 120]);
+        let widest = Interval::new(-0.3, 0.3);
+        let mut cells = best_cells(&gap, reach, widest, [700, 120]);
         for _ in 0..8 {
             cells = cells
                 .iter()
-                .flat_map(|&(_, x, omega)| {
-                    let clamp = |v: f64| v.clamp(reach[0], reach[1]);
-                    best_cells(
-                        &gap,
-                        [clamp(x[0]), clamp(x[1])],
-                        [omega[0].max(-widest), omega[1].min(widest)],
-                        [16, 16],
-                    )
-                })
+                .flat_map(|&(_, x, omega)| best_cells(&gap, x.cut(reach), omega.cut(widest), [16, 16]))
                 .collect();
             cells.sort_by(|a, b| a.0.total_cmp(&b.0));
             cells.truncate(12);
         }
         let (gap, x, omega) = cells[0];
-        [gap, (x[0] + x[1]) / 2.0, (omega[0] + omega[1]) / 2.0]
+        [gap, x.middle(), omega.middle()]
     }
 }
 
-type Square = (f64, [f64; 2], [f64; 2]);
+type Square = (f64, Interval, Interval);
 
 /// Returns the twelve lowest local minima of a grid, each with the interval of its neighbours.
-fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [usize; 2]) -> Vec<Square> {
-    let at = |range: [f64; 2], k: usize, n: usize| range[0] + (range[1] - range[0]) * k as f64 / n as f64;
+fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: Interval, omega: Interval, n: [usize; 2]) -> Vec<Square> {
+    let at = |range: Interval, k: usize, n: usize| range.low + range.width() * k as f64 / n as f64;
     let values: Vec<Vec<f64>> =
         (0..=n[0]).map(|i| (0..=n[1]).map(|j| gap(at(x, i, n[0]), at(omega, j, n[1]))).collect()).collect();
     let mut cells = Vec::new();
@@ -91,8 +84,8 @@ fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: [f64; 2], omega: [f64; 2], n: [
             if here.is_finite() && least {
                 cells.push((
                     here,
-                    [at(x, i0, n[0]), at(x, i1, n[0])],
-                    [at(omega, j0, n[1]), at(omega, j1, n[1])],
+                    Interval::new(at(x, i0, n[0]), at(x, i1, n[0])),
+                    Interval::new(at(omega, j0, n[1]), at(omega, j1, n[1])),
                 ));
             }
         }

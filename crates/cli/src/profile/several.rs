@@ -83,7 +83,7 @@ impl SeveralArguments {
     pub(super) fn aligned(&self, options: MeasureOptions) -> Result<MeasureOptions> {
         Ok(MeasureOptions {
             align: self.align.as_deref().map(|text| one_of("--align", text)).transpose()?,
-            unworn: self.unworn.iter().map(|text| range(text)).collect::<Result<_>>()?,
+            unworn: self.unworn.iter().map(|text| range(text).map(Into::into)).collect::<Result<_>>()?,
             ..options
         })
     }

@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 
 use crate::programs::not_run;
 use tempfile::TempDir;
+use wheelrail::Interval;
 use wheelrail::table::{Beginning, ContactTable};
 
 /// Random displacements of every test run. The environment variable `WHEELRAIL_TABLE_POINTS` takes another number.
@@ -147,8 +148,8 @@ fn compare_readers(folder: &Path, scene: &str) -> ContactTable {
     assert!(text.is_ascii() && text.lines().all(|line| line.len() < 80));
     let table = ContactTable::read(&text).unwrap();
     let about = table.about();
-    assert_eq!((about.lateral, about.tolerance), ([-9.0, 9.0], 1e-3));
-    let middle = 0.5 * (about.yaw[0] + about.yaw[1]);
+    assert_eq!((about.lateral.ends(), about.tolerance), ([-9.0, 9.0], 1e-3));
+    let middle = about.yaw.middle();
     for kind in [Beginning::Hop, Beginning::Joint] {
         assert!(!table.places(kind, middle).is_empty());
     }
@@ -156,7 +157,7 @@ fn compare_readers(folder: &Path, scene: &str) -> ContactTable {
         assert!(quantity.error > 0.0 && quantity.error <= quantity.tolerance, "{quantity:?}");
     }
 
-    let places = random(about.yaw);
+    let places = random(about.yaw.ends());
     let direct = searched(folder, scene, &places);
     let count = table.quantities().len();
     let own = |[y, yaw]: &[f64; 2]| {
@@ -186,7 +187,7 @@ fn no_reader_errs_by_more_than_the_table_states() {
     let scene = root().join("examples/scenes/wheelset.toml").display().to_string();
     let output = wheelrail(folder, &["table", &scene, "--lateral", "-9:9", "--hertz", "--out", "t"]);
     assert!(output.status.success(), "{output:?}");
-    assert_eq!(compare_readers(folder, &scene).about().yaw, [YAW; 2]);
+    assert_eq!(compare_readers(folder, &scene).about().yaw.ends(), [YAW; 2]);
     let csv = std::fs::read_to_string(folder.join("t/table.csv")).unwrap();
     let head = "cell,from_mm,to_mm,begins,side,quantity,error,c0,c1,c2,c3,c4,c5,c6,c7,c8";
     assert!(csv.starts_with(head) && csv.lines().all(|row| row.split(',').count() == 16));
@@ -201,7 +202,7 @@ fn no_reader_errs_by_more_than_the_table_over_yaw_states() {
     let output = wheelrail(folder, &asked);
     assert!(output.status.success(), "{output:?}");
     let table = compare_readers(folder, &scene);
-    assert_eq!(table.about().yaw, [-0.02, 0.02]);
+    assert_eq!(table.about().yaw.ends(), [-0.02, 0.02]);
     let csv = std::fs::read_to_string(folder.join("t/table.csv")).unwrap();
     let head = "cell,yaw_from_rad,yaw_to_rad,begins,side,quantity,error,j,c0,c1,";
     assert!(csv.starts_with(head) && csv.lines().all(|row| row.split(',').count() == 17));
@@ -237,7 +238,7 @@ fn cells_off_the_rail_say_so_and_cut_files_are_refused() {
     let text = std::fs::read_to_string(folder.join("t/table.wrp")).unwrap();
     let read = ContactTable::read(&text).unwrap();
     let off = read.off_rail(0.0);
-    let [[from, to]] = off[..] else { panic!("{off:?}") };
+    let [Interval { low: from, high: to }] = off[..] else { panic!("{off:?}") };
     assert!(from > 50.0 && from < 139.0 && to == 140.0, "{off:?}");
     assert!(said.contains(&format!("{from} to 140 mm: a wheel is off its rail")), "{said}");
     assert!(text.contains(&format!("# off the rail, without values: {from} to 140\n")), "{text}");

@@ -6,6 +6,8 @@
 //! cells are crossed at once: with E within c ± r in a block and d = E(ŷ) − c, 1/v = d^(−1/2) Σ_j C_j ((E −
 //! c)/d)^j. The moments ∫ (E − c)^j dy do not depend on ŷ and give the block's time.
 
+use crate::numerics::interval::Interval;
+
 /// Number of terms of the series of 1/√(1 − t).
 const TERMS: usize = 16;
 
@@ -115,8 +117,8 @@ impl Movement {
     }
 
     /// Returns where a cell begins and ends \[mm\].
-    pub(super) fn ends(&self, cell: usize) -> [f64; 2] {
-        [self.knots[cell].y, self.knots[cell + 1].y]
+    pub(super) fn ends(&self, cell: usize) -> Interval {
+        Interval::new(self.knots[cell].y, self.knots[cell + 1].y)
     }
 
     /// Returns the cell, wider than nothing, in which an amplitude above 0 lies, its end included; `None`
@@ -172,10 +174,8 @@ impl Movement {
         let cells = (smallest >> depth) * SMALLEST;
         let first = ((place - (1 << depth).min(place)) * cells).min(self.cells());
         let last = (first + cells).min(self.cells());
-        let energies = self.energy[first..=last].iter();
-        let (low, high) =
-            energies.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &e| (low.min(e), high.max(e)));
-        let (centre, radius) = (low + (high - low) / 2.0, (high - low) / 2.0);
+        let energies = Interval::around(self.energy[first..=last].iter().copied());
+        let (centre, radius) = (energies.at(0.5), energies.width() / 2.0);
         let mut moments = [0.0; TERMS];
         for k in first..last {
             self.add_moments(k, centre, radius, &mut moments);

@@ -4,6 +4,7 @@
 
 use super::pairs::Pair3;
 use super::{Section, Side, WITHIN};
+use crate::numerics::interval::Interval;
 
 /// Largest height of a sample of the wheel over the lowest ring beside it \[mm\]: half a step at a noise's
 /// slope.
@@ -131,7 +132,7 @@ impl Oracle {
         for k in 0..gaps.len() {
             let (a, b) = (k.saturating_sub(1), (k + 1).min(gaps.len() - 1));
             if gaps[k] <= gaps[a] && gaps[k] <= gaps[b] && gaps[k] <= coarse + COARSE {
-                let cell = [self.samples[from + a][0], self.samples[from + b][0]];
+                let cell = Interval::new(self.samples[from + a][0], self.samples[from + b][0]);
                 let found = self.ring_between(at, rail, cell, zooms);
                 if found[0] < best[0] {
                     best = found;
@@ -143,18 +144,18 @@ impl Oracle {
 
     /// Returns the lowest gap of the rings between two abscissae of the wheel's profile, with the abscissa of
     /// the ring.
-    fn ring_between(&self, at: f64, rail: f64, mut cell: [f64; 2], zooms: u32) -> [f64; 2] {
-        let (ends, mut best) = (cell, [f64::INFINITY, cell[0]]);
+    fn ring_between(&self, at: f64, rail: f64, mut cell: Interval, zooms: u32) -> [f64; 2] {
+        let (ends, mut best) = (cell, [f64::INFINITY, cell.low]);
         for _ in 0..zooms {
-            let step = (cell[1] - cell[0]) / 8.0;
+            let step = cell.width() / 8.0;
             for k in 0..=8 {
-                let x = (cell[0] + step * f64::from(k)).min(cell[1]);
+                let x = (cell.low + step * f64::from(k)).min(cell.high);
                 let gap = self.gap([x, self.wheel.height(x)], at, rail);
                 if gap < best[0] {
                     best = [gap, x];
                 }
             }
-            cell = [(best[1] - step).max(ends[0]), (best[1] + step).min(ends[1])];
+            cell = Interval::of(best[1]).grown(step).cut(ends);
         }
         best
     }
@@ -215,12 +216,10 @@ impl Oracle {
             // A sample is above its minimum by at most a noise's slope times the step.
             let low = gaps[k] <= gaps[a] && gaps[k] <= gaps[b] && gaps[k] <= lowest + WITHIN + 1e-2;
             if low && gaps[k].is_finite() {
-                out.extend(
-                    self.zoomed(
-                        [x[a.saturating_sub(1)], x[(b + 1).min(x.len() - 1)]],
-                        [x[0], x[x.len() - 1]],
-                    ),
-                );
+                out.extend(self.zoomed(
+                    Interval::new(x[a.saturating_sub(1)], x[(b + 1).min(x.len() - 1)]),
+                    Interval::new(x[0], x[x.len() - 1]),
+                ));
             }
         }
         let lowest = out.iter().map(|m| m[0]).fold(f64::INFINITY, f64::min);
@@ -230,8 +229,8 @@ impl Oracle {
 
     /// Returns the least gap between two abscissae, as \[gap, X\]; `None` if it is at one of them, unless
     /// that is an end of the rail.
-    fn zoomed(&self, cell: [f64; 2], rail: [f64; 2]) -> Option<[f64; 2]> {
-        let [mut a, mut b] = cell;
+    fn zoomed(&self, cell: Interval, rail: Interval) -> Option<[f64; 2]> {
+        let Interval { low: mut a, high: mut b } = cell;
         let mut best = [f64::INFINITY, a];
         for _ in 0..17 {
             let step = (b - a) / 6.0;
@@ -242,11 +241,11 @@ impl Oracle {
                     best = [gap, at];
                 }
             }
-            (a, b) = ((best[1] - step).max(cell[0]), (best[1] + step).min(cell[1]));
+            [a, b] = Interval::of(best[1]).grown(step).cut(cell).ends();
         }
-        let edge = 1e-6 * (cell[1] - cell[0]);
-        let inside = |k: usize| (best[1] - cell[k]).abs() > edge || cell[k] == rail[k];
-        (inside(0) && inside(1)).then_some(best)
+        let edge = 1e-6 * cell.width();
+        let inside = |end: f64, of_rail: f64| (best[1] - end).abs() > edge || end == of_rail;
+        (inside(cell.low, rail.low) && inside(cell.high, rail.high)).then_some(best)
     }
 }
 
