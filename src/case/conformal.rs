@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::site::{Site, ends};
 use crate::conformal::{NormalGap, RailPoint, fill_normal_gap};
+use crate::numerics::interval::Interval;
 use crate::patch::{Component, End, Patch, Window};
 use crate::separation::{EtaAxis, Evaluator, Values};
 
@@ -21,8 +22,8 @@ pub struct Conformal {
     pub truncation: f64,
     /// The patch in the window of the grid; `None` without an approach.
     pub patch: Option<Patch>,
-    /// Least and largest α \[rad\] within each component of the patch.
-    pub angles: Vec<[f64; 2]>,
+    /// Range of α \[rad\] within each component of the patch.
+    pub angles: Vec<Interval>,
 }
 
 impl Conformal {
@@ -36,7 +37,7 @@ impl Conformal {
         let approach = site.contact.approach.filter(|_| site.has_extent());
         let patch = approach.map(|approach| Patch::over_rail(&site.contact.placement, approach, &window));
         let components = patch.iter().flat_map(|patch| &patch.components);
-        let angles = components.map(|component| gap.angles(component.xi)).collect();
+        let angles = components.map(|component| gap.angles(component.xi).into()).collect();
         let rail = sigma.iter().filter_map(|&sigma| gap.rail().point(sigma)).collect();
         Some(Self { rail, gap: values, truncation, patch, angles })
     }
@@ -51,7 +52,7 @@ impl Conformal {
                     "cut": is_cut(part),
                     "area_mm2": part.area,
                     "angle_extent_rad": angle,
-                    "turn_rad": angle[1] - angle[0],
+                    "turn_rad": angle.width(),
                 })
             });
             json!({ "area_mm2": patch.area(), "components": parts.collect::<Vec<_>>() })

@@ -3,6 +3,7 @@
 use super::columns::Columns;
 use crate::error::{Error, Result};
 use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, SEPARATOR, jumps};
+use crate::numerics::interval::Interval;
 
 /// Most positions that are drawn: more than a page has pixels.
 pub const MOST_DRAWN: usize = 2000;
@@ -147,15 +148,14 @@ fn conicity_at(lateral: &[f64], conicity: &[f64], amplitude: f64) -> Option<f64>
 }
 
 /// Gives the range of the curves over the positions on treads, if that of all positions is far longer.
-fn tread_range(curves: &[PlottedCurve], tread: &[bool]) -> Option<[f64; 2]> {
+fn tread_range(curves: &[PlottedCurve], tread: &[bool]) -> Option<Interval> {
     let range = |all: bool| {
         let points = curves.iter().flat_map(|curve| curve.points.iter().zip(tread));
-        let values =
-            points.filter(|(point, tread)| point[1].is_finite() && (all || **tread)).map(|(p, _)| p[1]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+        let points = points.filter(|(point, tread)| point[1].is_finite() && (all || **tread));
+        Interval::around(points.map(|(point, _)| point[1]))
     };
-    let ([low, high], [least, most]) = (range(false), range(true));
-    (high > low && most - least > FLATTENED * (high - low)).then_some([low, high])
+    let (on_tread, all) = (range(false), range(true));
+    (on_tread.low < on_tread.high && all.width() > FLATTENED * on_tread.width()).then_some(on_tread)
 }
 
 /// The rows of the lowest contacts, by position and side.

@@ -118,7 +118,7 @@ pub const FACTS: [Fact; 27] = [
     Fact {
         unit: "degrees",
         ..text("its normal turns", |part| {
-            let turns = part.analysis.conformal.as_ref()?.angles.iter().map(|angle| angle[1] - angle[0]);
+            let turns = part.analysis.conformal.as_ref()?.angles.iter().map(|angle| angle.width());
             Some(format!("{:.2}", turns.reduce(f64::max)?.to_degrees()))
         })
     },

@@ -7,6 +7,7 @@ use super::places::MOST_PARTS;
 use crate::conformal::{RailArcLength, Reference};
 use crate::error::{Error, Result};
 use crate::mesh::{Axes, GridGroup, MOST_POINTS, groups};
+use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 
 /// The axes of one grid.
@@ -85,7 +86,7 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
         }
         let rail = rail();
         let covered = covered(&rail, group, &plane);
-        let xi = xi.clone().unwrap_or_else(|| within(automatic.xi, rail.reach()));
+        let xi = xi.clone().unwrap_or_else(|| within(automatic.xi, rail.reach().map(Interval::from)));
         on_rail(Grid { xi, eta, warning, sigma: None, groups: covered }, &rail)
     };
     groups.iter().enumerate().map(grid).collect()
@@ -93,16 +94,16 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
 
 /// Lists the groups of the plane's patch that a group over the rail's surface covers.
 fn covered(rail: &RailArcLength<'_>, group: &GridGroup, plane: &[GridGroup]) -> Vec<usize> {
-    let xi = group.extent.xi.map(|sigma| rail.point(sigma).map_or(f64::NAN, |at| at.xi));
-    let meets = |a: [f64; 2], b: [f64; 2]| a[0] <= b[1] && b[0] <= a[1];
-    let under = |other: &GridGroup| meets(xi, other.extent.xi) && meets(group.extent.eta, other.extent.eta);
-    (0..plane.len()).filter(|&k| under(&plane[k])).collect()
+    let [sigma, eta] = [group.extent.xi, group.extent.eta].map(Interval::from);
+    let xi = sigma.map(|sigma| rail.point(sigma).map_or(f64::NAN, |at| at.xi));
+    let under = |other: &Window| xi.meets(other.xi.into()) && eta.meets(other.eta.into());
+    (0..plane.len()).filter(|&k| under(&plane[k].extent)).collect()
 }
 
 /// Keeps the values of an automatic axis of σ \[mm\] that lie on the rail's surface; its margins may not.
-fn within(sigma: Vec<f64>, reach: Option<[f64; 2]>) -> Vec<f64> {
-    let [low, high] = reach.unwrap_or([f64::NAN; 2]);
-    sigma.into_iter().filter(|sigma| (low..=high).contains(sigma)).collect()
+fn within(sigma: Vec<f64>, reach: Option<Interval>) -> Vec<f64> {
+    let inside = |sigma: &f64| reach.is_some_and(|reach| reach.contains(*sigma));
+    sigma.into_iter().filter(inside).collect()
 }
 
 /// Takes the first axis of a grid as σ along the rail's surface.
@@ -110,13 +111,15 @@ fn within(sigma: Vec<f64>, reach: Option<[f64; 2]>) -> Vec<f64> {
 /// # Errors
 /// Values beyond the part of the rail that σ covers; a rail without a surface at C.
 fn on_rail(grid: Grid, rail: &RailArcLength<'_>) -> Result<Grid> {
-    let beyond = |found: String, [low, high]: [f64; 2]| {
+    let beyond = |found: String, Interval { low, high }: Interval| {
         let expected = format!("σ within [{low}, {high}] mm, where the rail's surface is single-valued");
         let advice =
             "it ends, overhangs or is covered by another part of the rail beyond: take a smaller range";
         Error::new("grid: xi", found, expected, advice)
     };
-    let Some(reach) = rail.reach() else { return Err(beyond("no surface at C".into(), [f64::NAN; 2])) };
+    let Some(reach) = rail.reach().map(Interval::from) else {
+        return Err(beyond("no surface at C".into(), Interval::of(f64::NAN)));
+    };
     let point =
         |&sigma: &f64| rail.point(sigma).map(|at| at.xi).ok_or_else(|| beyond(sigma.to_string(), reach));
     let xi = grid.xi.iter().map(point).collect::<Result<Vec<_>>>()?;

@@ -3,6 +3,7 @@
 use nalgebra::{Point2, UnitComplex};
 
 use super::doubts::ContactDoubts;
+use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
 use crate::profile::{Mark, last_groove, trace};
 use crate::search::{Contact, SweepRow, TrackSide};
@@ -71,8 +72,8 @@ pub struct Landmarks {
     top: Point2<f64>,
     /// Tip of the flange, in the wheel's axes; `None` for a wheel without one.
     pub(crate) tip: Option<Point2<f64>>,
-    /// Least and largest abscissa of the wheel's profile \[mm\].
-    pub(crate) ends: [f64; 2],
+    /// Range of the abscissae of the wheel's profile \[mm\].
+    pub(crate) reach: Interval,
     /// Height of the profile at its least abscissa over the tip \[mm\].
     pub(crate) back: f64,
 }
@@ -87,13 +88,12 @@ impl Landmarks {
         let point = |mark: &Mark| Point2::new(mark.station.x, mark.station.z);
         let top = head.iter().map(point).max_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
         let low = wheel.iter().map(point).min_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
-        let all = wheel.iter().map(|mark| mark.station.x);
-        let ends = [all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max)];
+        let reach = Interval::around(wheel.iter().map(|mark| mark.station.x));
         let back =
-            wheel.iter().filter(|mark| mark.station.x < ends[0] + BACK_WIDTH).map(|mark| mark.station.z);
+            wheel.iter().filter(|mark| mark.station.x < reach.low + BACK_WIDTH).map(|mark| mark.station.z);
         let back = back.fold(f64::NEG_INFINITY, f64::max) - low.y;
         let tip = (median_height(&wheel) - low.y >= FLANGE).then_some(low);
-        Self { pair: pair.clone(), top, tip, ends, back }
+        Self { pair: pair.clone(), top, tip, reach, back }
     }
 
     /// Returns the height \[mm\] of the wheel's surface over the top of the rail, 0 where nothing of the wheel is over it: how far

@@ -5,6 +5,7 @@ use nalgebra::Point2;
 use super::input::FrameOrigin;
 use crate::load::{WeightedFrame, weighted_frame};
 use crate::mesh::{CELLS_REACHED, GridGroup, groups};
+use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 
@@ -31,7 +32,7 @@ pub(super) struct Overlap {
     /// The box around it \[mm\].
     extent: Window,
     /// Range of ξ that is nearer to it than to other parts \[mm\].
-    nearest: [f64; 2],
+    nearest: Interval,
     /// Its frame on the rail, turned towards those of parts nearby.
     pub frame: WeightedFrame,
 }
@@ -61,10 +62,10 @@ pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> V
     let middle = |k: usize| 0.5 * (found[k].0.extent.xi[1] + found[k + 1].0.extent.xi[0]);
     let overlap = |k: usize| {
         let (group, frame) = &found[k];
-        let nearest = [
+        let nearest = Interval::new(
             if k > 0 { middle(k - 1) } else { f64::NEG_INFINITY },
             if k + 1 < found.len() { middle(k) } else { f64::INFINITY },
-        ];
+        );
         Overlap { extent: group.extent, nearest, frame: WeightedFrame { angle: turned(k), ..*frame } }
     };
     (0..found.len()).map(overlap).collect()
@@ -86,7 +87,7 @@ fn nearness(upright: &Placement, [left, right]: [&GridGroup; 2], rules: &RegionR
 impl Overlap {
     /// Tells whether a point of the rail at this ξ of the upright frame \[mm\] is in it.
     pub fn holds(&self, xi: f64) -> bool {
-        self.extent.xi[0] <= xi && xi <= self.extent.xi[1]
+        Interval::from(self.extent.xi).contains(xi)
     }
 
     /// Finds the patch under an approach δ \[mm\] in another frame, with the components that are of this part.
@@ -100,9 +101,9 @@ impl Overlap {
             return Patch::new(placement, approach, &Window::UNBOUNDED);
         }
         let xi = self.nearest.map(|xi| if xi.is_finite() { along(xi) } else { xi });
-        let mut patch = Patch::new(placement, approach, &Window { xi, ..Window::UNBOUNDED });
-        let own = self.extent.xi.map(along);
-        patch.components.retain(|component| component.xi[0] <= own[1] && own[0] <= component.xi[1]);
+        let mut patch = Patch::new(placement, approach, &Window { xi: xi.ends(), ..Window::UNBOUNDED });
+        let own = Interval::from(self.extent.xi).map(along);
+        patch.components.retain(|component| own.meets(component.xi.into()));
         patch
     }
 }

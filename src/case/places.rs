@@ -10,6 +10,7 @@ use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::overlaps::RegionRules;
 use super::wheel::{OnLoft, Region, Wheel, carry, placed_at};
 use crate::error::{Error, ErrorKind, Result};
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::search;
 use crate::search::{NoConicity, ONE_CONTACT, Position, Roll, Selection, SweepRow, TrackSide};
@@ -186,7 +187,7 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
     }
     let Place::Wheelset { system, .. } = &case.standing.place else { return Ok((sides, found)) };
     let spread = system.right().track().rail_x() + system.left().track().rail_x();
-    let (mut range, mut before) = ([f64::NEG_INFINITY, f64::INFINITY], None);
+    let (mut range, mut before) = (Interval::ALL, None);
     for _ in 0..MOST_ROLLS {
         let (Ok(carried), [right, left]) = (&found, sides.as_slice()) else { break };
         let heights = [right, left].map(|side| side.height);
@@ -207,13 +208,13 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
         if step.abs() <= SETTLED_ROLL {
             return Ok((sides, found));
         }
-        range[usize::from(step < 0.0)] = here;
+        *(if step < 0.0 { &mut range.high } else { &mut range.low }) = here;
         before = Some((here, miss, slope));
-        let inside = range[0] < here + step && here + step < range[1];
-        if !inside && range[1] - range[0] < SLOPE_OVER && step.abs() > SLOPE_OVER {
+        let inside = range.low < here + step && here + step < range.high;
+        if !inside && range.width() < SLOPE_OVER && step.abs() > SLOPE_OVER {
             break;
         }
-        let roll = if inside { here + step } else { range[0] + (range[1] - range[0]) / 2.0 };
+        let roll = if inside { here + step } else { range.low + range.width() / 2.0 };
         sides = self::sides(case, within, Some(roll))?;
         found = regions(case, &sides, each, most)?;
     }

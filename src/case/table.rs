@@ -4,6 +4,7 @@ use super::input::{ApproachBy, Case, Place};
 use crate::error::{Error, Result};
 use crate::export::{table_csv, table_nc, table_wrp};
 use crate::files::{Folder, Names};
+use crate::numerics::interval::Interval;
 use crate::table::{Asked, ContactTable, Pressed, build};
 
 /// Names of the files of a table: for C and Fortran, for whatever reads NetCDF, and for everything else.
@@ -21,8 +22,8 @@ pub const TABLE_FOLDER: Names =
 /// A single wheel; a roll by the wheels' loads; ellipses without an approach or load; the errors of [`build`].
 pub fn table(
     case: &Case,
-    lateral: [f64; 2],
-    yaw: Option<[f64; 2]>,
+    lateral: Interval,
+    yaw: Option<Interval>,
     tolerance: f64,
     hertz: bool,
 ) -> Result<ContactTable> {
@@ -51,8 +52,8 @@ pub fn table(
         None => None,
         Some(by) => Some(([true, false].map(|left| pressed_by(by, left)), modulus)),
     };
-    let yaw = yaw.unwrap_or([position.yaw; 2]);
-    let asked = Asked { lateral: lateral.into(), yaw: yaw.into(), roll: position.roll, tolerance, pressed };
+    let yaw = yaw.unwrap_or(Interval::of(position.yaw));
+    let asked = Asked { lateral, yaw, roll: position.roll, tolerance, pressed };
     build(system, &asked)
 }
 

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 
 use super::doubts::{Doubt, DoubtKind};
 use super::landmarks::{Landmarks, Touching};
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Profile, trace};
 
@@ -117,15 +118,15 @@ pub fn radius(place: &str, radius: f64) -> Option<Doubt> {
 
 /// Doubts a wheel whose flange is at its field side.
 pub fn flange_side(place: &str, marks: &Landmarks) -> Option<Doubt> {
-    let (tip, [left, right]) = (marks.tip?, marks.ends);
+    let (tip, left) = (marks.tip?, marks.reach.low);
     let found =
         || format!("{place}: the tip of its flange is at x = {:.1} mm, its other end at {left:.1} mm", tip.x);
-    (tip.x > left + (right - left) / 2.0).then(|| Doubt::new(DoubtKind::FlangeSide, found()))
+    (tip.x > left + marks.reach.width() / 2.0).then(|| Doubt::new(DoubtKind::FlangeSide, found()))
 }
 
 /// Doubts the abscissa of a flange back \[mm\] where the wheel's profile shows another one.
 pub fn flange_back_x([place, wheel]: [&str; 2], x: f64, marks: &Landmarks) -> Option<Doubt> {
-    let ([height, off], left) = (BACK, marks.ends[0]);
+    let ([height, off], left) = (BACK, marks.reach.low);
     let shown = marks.tip.is_some() && marks.back > height && flange_side(wheel, marks).is_none();
     let found = || format!("{place}: {x} mm, and the back of {wheel} is at x = {left:.1} mm");
     (shown && (x - left).abs() > off).then(|| Doubt::new(DoubtKind::FlangeBackX, found()))
@@ -153,9 +154,7 @@ pub fn approach(rail: &Profile, approach: f64, estimated: bool) -> Option<Doubt>
     if approach <= *APPROACHES.end() {
         return None;
     }
-    let marks = trace(rail, 1.0);
-    let heights = || marks.iter().map(|mark| mark.station.z);
-    let height = heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min);
+    let height = Interval::around(trace(rail, 1.0).iter().map(|mark| mark.station.z)).width();
     let beyond = if approach > height { ", more than the rail's profile is high" } else { "" };
     Some(Doubt::new(DoubtKind::Approach, format!("an approach of {approach:.4} mm{beyond}")))
 }

@@ -7,6 +7,7 @@ use super::run::{Part, Run};
 use crate::conformal::{NormalGap, RailArcLength, fill_normal_gap};
 use crate::export::{PageConformal, PageFrame, PageLoop, PagePressure, ViewContact, ViewPage};
 use crate::mesh::equal_steps;
+use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
 use crate::separation::{EtaAxis, Evaluator, Values, plan};
@@ -140,7 +141,8 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
 fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let (placement, patch) = (&part.site.contact.placement, part.analysis.patch.as_ref());
     let window = window(part);
-    let (xi, axis) = (through_zero(window.xi, n), EtaAxis::new(&through_zero(window.eta, n)));
+    let [xi, eta] = [window.xi, window.eta].map(|range| through_zero(range.into(), n));
+    let axis = EtaAxis::new(&eta);
     let question = &run.case.question;
     let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
     let mut separation = Values::new(n * n);
@@ -175,21 +177,19 @@ fn window(part: &Part) -> Window {
     let patch = part.analysis.patch.as_ref();
     let Some((patch, inner)) = patch.and_then(|patch| Some((patch, patch.extent()?))) else {
         let Window { xi, eta } = part.site.window();
-        return Window { xi: with_extent(xi), eta: with_extent(eta) };
+        return Window { xi: with_extent(xi.into()).ends(), eta: with_extent(eta.into()).ends() };
     };
     let inner = conformal_box(part).map_or(inner, |Window { xi, eta }| inner.with(xi, eta));
     let largest = (SHOWN * patch.approach).min(f64::MAX);
     let wide = Patch::new(placement, largest, &Window::UNBOUNDED);
-    let apart = |[a, b]: [f64; 2], [c, d]: [f64; 2]| b < c || d < a;
-    let around = wide.components.iter().filter(|c| !apart(c.xi, inner.xi) && !apart(c.eta, inner.eta));
+    let [xi, eta] = [inner.xi, inner.eta].map(Interval::from);
+    let around = wide.components.iter().filter(|c| xi.meets(c.xi.into()) && eta.meets(c.eta.into()));
     let outer = around.fold(inner, |outer, c| outer.with(c.xi, c.eta));
-    let shown = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
-        let reach = WIDEST * (b - a);
-        let (from, to) = (c.max(a - reach), d.min(b + reach));
-        let margin = MARGIN * (to - from);
-        with_extent([from - margin, to + margin])
+    let shown = |inner: Interval, outer: Interval| {
+        let shown = outer.cut(inner.grown(WIDEST * inner.width()));
+        with_extent(shown.grown(MARGIN * shown.width())).ends()
     };
-    Window { xi: shown(inner.xi, outer.xi), eta: shown(inner.eta, outer.eta) }
+    Window { xi: shown(xi, outer.xi.into()), eta: shown(eta, outer.eta.into()) }
 }
 
 /// Gives the box of ξ and η around the patch on the rail's surface; `None` where there is none.
@@ -201,17 +201,17 @@ fn conformal_box(part: &Part) -> Option<Window> {
 }
 
 /// Widens an interval that has no length.
-fn with_extent([from, to]: [f64; 2]) -> [f64; 2] {
-    if from < to { [from, to] } else { [from - LEAST_HALF, to + LEAST_HALF] }
+fn with_extent(range: Interval) -> Interval {
+    if range.low < range.high { range } else { range.grown(LEAST_HALF) }
 }
 
 /// Gives n ≥ 2 values in equal steps over an interval. The interval moves by less than a step, so that 0, where C lies, is
 /// one of the values if it is between them.
-fn through_zero([from, to]: [f64; 2], n: usize) -> Vec<f64> {
-    let step = (to - from) / (n - 1) as f64;
-    let before = (-from / step).round();
+fn through_zero(range: Interval, n: usize) -> Vec<f64> {
+    let step = range.width() / (n - 1) as f64;
+    let before = (-range.low / step).round();
     if before < 0.0 || before >= n as f64 {
-        return equal_steps(from, to, n);
+        return equal_steps(range.low, range.high, n);
     }
     (0..n).map(|k| (k as f64 - before) * step).collect()
 }
@@ -304,9 +304,9 @@ mod tests {
 
     #[test]
     fn axes_of_a_page_pass_through_c_where_it_is_inside() {
-        let around = through_zero([-1.0, 2.1], 32);
+        let around = through_zero(Interval::new(-1.0, 2.1), 32);
         assert!(around.len() == 32 && around.contains(&0.0), "{around:?}");
         assert!((around[0] + 1.0).abs() < 0.1 && (around[31] - 2.1).abs() < 0.1, "{around:?}");
-        assert_eq!(through_zero([3.0, 4.0], 3), [3.0, 3.5, 4.0]);
+        assert_eq!(through_zero(Interval::new(3.0, 4.0), 3), [3.0, 3.5, 4.0]);
     }
 }

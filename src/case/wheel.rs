@@ -14,6 +14,7 @@ use crate::error::Result;
 use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
 use crate::lofted::LoftedBody;
 use crate::mesh::groups;
+use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Side, Station};
@@ -132,7 +133,7 @@ impl Region {
 
     /// Tells whether the group of parts around C, which lies at `y` \[mm\] along the rail, holds a place of contact.
     fn holds(&self, place: &Reached, y: f64) -> bool {
-        let within = |at: f64, [from, to]: [f64; 2]| from <= at && at <= to;
+        let within = |at: f64, range: [f64; 2]| Interval::from(range).contains(at);
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
         let [xi, eta] = match self.placement.lofted() {
             None => return self.extents.first().is_some_and(|extent| within(xi, extent.xi)),

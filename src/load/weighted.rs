@@ -2,6 +2,7 @@
 
 use nalgebra::Point2;
 
+use crate::numerics::interval::Interval;
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -26,14 +27,13 @@ pub struct WeightedFrame {
 /// tangent. In a frame whose ζ is vertical they are those of CONTACT, which weighs the vertical overlap over the track's plane. A
 /// region of two lobes may have its origin between them, where the bodies do not overlap. `None` where s < δ at no point of the rule.
 pub fn weighted_frame(placement: &Placement, extent: &Window, approach: f64) -> Option<WeightedFrame> {
-    let step = |[from, to]: [f64; 2], count: usize| (to - from) / count as f64;
-    let centres = |range: [f64; 2], count: usize| -> Vec<f64> {
-        (0..count).map(|k| range[0] + (k as f64 + 0.5) * step(range, count)).collect()
-    };
-    let eta = centres(extent.eta, CELLS[1]);
+    let sides = [extent.xi, extent.eta].map(Interval::from);
+    let steps = [0, 1].map(|k| sides[k].width() / CELLS[k] as f64);
+    let centre = |k: usize, i: usize| sides[k].low + (i as f64 + 0.5) * steps[k];
+    let [xi, eta] = [0, 1].map(|k| (0..CELLS[k]).map(|i| centre(k, i)).collect::<Vec<_>>());
     let (frame, mut evaluator) = (placement.rail().contact_frame(), Evaluator::new(placement));
     let (mut gaps, mut sums) = (vec![0.0; eta.len()], [0.0; 3]);
-    for xi in centres(extent.xi, CELLS[0]) {
+    for xi in xi {
         evaluator.column(xi, &eta, &mut gaps);
         let overlaps = gaps.iter().filter(|s| **s < approach);
         let weight: f64 = overlaps.map(|s| (approach - s) * (approach - s)).sum();
@@ -43,7 +43,7 @@ pub fn weighted_frame(placement: &Placement, extent: &Window, approach: f64) -> 
             sums = [sums[0] + weight, sums[1] + weight * x, sums[2] + weight * angle];
         }
     }
-    let ([weight, x, angle], cell) = (sums, step(extent.xi, CELLS[0]) * step(extent.eta, CELLS[1]));
+    let ([weight, x, angle], cell) = (sums, steps[0] * steps[1]);
     let found = WeightedFrame { rail_x: x / weight, angle: angle / weight, weight: weight * cell };
     (weight > 0.0).then_some(found)
 }

@@ -8,7 +8,7 @@ use super::clean::checks::{Finding, no_order, wrong_unit};
 use super::options::{NamedOrigin, Options, Origin, Repair};
 use super::read::points::{DesignElement, ElementShape, Point, Points};
 use super::shape::{
-    flange_side, gauge_depth, gauge_side, has_flange_back, head_up, running_head, top, width,
+    flange_side, gauge_depth, gauge_side, has_flange_back, head_up, reach, running_head, top,
 };
 use crate::error::{Error, Result};
 use crate::profile::Side;
@@ -118,8 +118,7 @@ fn asked(open: &[Question], points: &[Point], side: Side, stated: bool) -> Error
     let mut advice =
         if open.len() > 1 { "give both options".to_owned() } else { "give the option".to_owned() };
     if !stated {
-        let [low, high] = width(points);
-        advice += &format!(", and `unit` unless it is {:.1} mm wide", high - low);
+        advice += &format!(", and `unit` unless it is {:.1} mm wide", reach(points).width());
     }
     let other = if side == Side::Rail { Side::Wheel } else { Side::Rail };
     let mut found = list(|question| question.found, "; ");

@@ -6,6 +6,7 @@
 use std::ops::RangeInclusive;
 
 use super::read::points::Point;
+use crate::numerics::interval::Interval;
 use crate::profile::{Side, last_groove};
 
 /// Least ratio between the end drops of a wheel's true upper side and those of the wrong one. The value 4 leaves room for
@@ -175,8 +176,8 @@ fn flange_height(points: &[Point], tip: usize) -> f64 {
 /// Returns whether the flange of an upright wheel is at smaller x, with the reason.
 pub(super) fn flange_side(points: &[Point]) -> Option<(bool, String)> {
     let (tip, drop) = extreme(points, -1.0)?;
-    let [low, high] = width(points);
-    let off = (points[tip].x - 0.5 * (low + high)) / (high - low);
+    let all = reach(points);
+    let off = (points[tip].x - all.middle()) / all.width();
     let height = flange_height(points, tip);
     let flange = FLANGE_HEIGHTS.contains(&height);
     (drop >= LEAST_DROP && flange && off.abs() >= OFF_MIDDLE)
@@ -240,10 +241,9 @@ pub(super) fn has_flange_back(points: &[Point]) -> bool {
     }
 }
 
-/// Returns the smallest and largest x.
-pub(super) fn width(points: &[Point]) -> [f64; 2] {
-    let x = points.iter().map(|p| p.x);
-    [x.clone().fold(f64::INFINITY, f64::min), x.fold(f64::NEG_INFINITY, f64::max)]
+/// Returns the range of x.
+pub(super) fn reach(points: &[Point]) -> Interval {
+    Interval::around(points.iter().map(|p| p.x))
 }
 
 #[cfg(test)]

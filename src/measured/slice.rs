@@ -7,6 +7,7 @@ use super::options::Options;
 use super::read::points::Point;
 use super::read::slices::{Slice, SliceList, unit};
 use crate::error::{Error, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::profile::Side;
 
 /// Distance from a slice \[mm or rad\] up to which a section is that slice: what the rounding of a position in another
@@ -202,9 +203,9 @@ struct Path {
 
 impl Path {
     /// The indices of the points between two arc lengths and not at them.
-    fn inside(&self, [from, to]: [f64; 2]) -> std::ops::Range<usize> {
-        let first = self.arc.partition_point(|&s| s <= from + SAME_POINT);
-        let last = self.arc.partition_point(|&s| s < to - SAME_POINT);
+    fn inside(&self, arc: Interval) -> std::ops::Range<usize> {
+        let first = self.arc.partition_point(|&s| s <= arc.low + SAME_POINT);
+        let last = self.arc.partition_point(|&s| s < arc.high - SAME_POINT);
         first..last.max(first)
     }
 
@@ -220,13 +221,13 @@ impl Path {
     /// The points between the first and the last feature.
     fn whole(&self) -> Vec<Point> {
         let [from, to] = self.parts.map(|k| self.breaks[k]);
-        let inside = self.inside([from, to]);
+        let inside = self.inside(Interval::new(from, to));
         [self.at(from)].into_iter().chain(self.points[inside].iter().copied()).chain([self.at(to)]).collect()
     }
 
     /// The arc lengths at both ends of a part.
-    fn part(&self, k: usize) -> [f64; 2] {
-        [self.breaks[k], self.breaks[k + 1]]
+    fn part(&self, k: usize) -> Interval {
+        Interval::new(self.breaks[k], self.breaks[k + 1])
     }
 }
 
@@ -245,10 +246,10 @@ fn between(a: &Path, b: &Path, share: f64) -> Option<(Vec<Point>, usize)> {
         let denser_b = inside_b.len() > inside_a.len();
         counts[usize::from(denser_b)] += inside_a.len().max(inside_b.len());
         if points.is_empty() {
-            points.push(mixed(&a.at(own[0]), &b.at(other[0]), share));
+            points.push(mixed(&a.at(own.low), &b.at(other.low), share));
         }
-        let scaled = |s: f64, [from, to]: [f64; 2], onto: [f64; 2]| {
-            onto[0] + (onto[1] - onto[0]) * ((s - from) / (to - from))
+        let scaled = |s: f64, from: Interval, onto: Interval| {
+            onto.low + onto.width() * ((s - from.low) / from.width())
         };
         if denser_b {
             let mix = |j: usize| {
@@ -259,7 +260,7 @@ fn between(a: &Path, b: &Path, share: f64) -> Option<(Vec<Point>, usize)> {
         } else {
             points.extend(inside_a.map(|j| mixed(&a.points[j], &b.at(scaled(a.arc[j], own, other)), share)));
         }
-        points.push(mixed(&a.at(own[1]), &b.at(other[1]), share));
+        points.push(mixed(&a.at(own.high), &b.at(other.high), share));
     }
     Some((points, usize::from(counts[1] > counts[0])))
 }

@@ -5,6 +5,7 @@
 //! over a symmetric patch, and grids of one spacing for several parts or approaches share their centres.
 
 use crate::error::{Error, ErrorKind, Result, finite};
+use crate::numerics::interval::Interval;
 use crate::patch::{Component, Patch, Window};
 
 /// Cells over the short side of the box if no spacing is given. The peak pressures of both solvers are then within 0.5 %.
@@ -160,14 +161,10 @@ impl GridGroup {
     fn joined(mut self, other: Self, parts: &[GridPart]) -> Self {
         self.components.extend(other.components);
         self.components.sort_unstable();
-        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         let boxes = self.components.iter().map(|&k| sides(&parts[k].extent));
         let largest = boxes.max_by(|a, b| (a[0] * a[1]).total_cmp(&(b[0] * b[1])));
         Self {
-            extent: Window {
-                xi: join(self.extent.xi, other.extent.xi),
-                eta: join(self.extent.eta, other.extent.eta),
-            },
+            extent: self.extent.with(other.extent.xi, other.extent.eta),
             least: self.least.min(other.least),
             short_side: largest.map_or(self.short_side, |[short, _]| short),
             components: self.components,
@@ -176,7 +173,7 @@ impl GridGroup {
 }
 
 fn holds_contact(extent: &Window) -> bool {
-    [extent.xi, extent.eta].iter().all(|[from, to]| *from <= 0.0 && *to >= 0.0)
+    [extent.xi, extent.eta].into_iter().all(|side| Interval::from(side).contains(0.0))
 }
 
 /// Returns the shorter and the longer side of a component's box \[mm\].

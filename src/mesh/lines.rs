@@ -2,6 +2,7 @@
 
 use nalgebra::Point3;
 
+use crate::numerics::interval::Interval;
 use crate::patch::Band;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -23,10 +24,8 @@ pub(super) fn lines(bands: &[Band], own: &[f64]) -> Vec<Vec<f64>> {
     pairs.sort_by(|p, q| bands[p[1]].xi[0].total_cmp(&bands[q[1]].xi[0]));
     let takes = |k: usize| {
         pairs.iter().any(|&[left, right]| {
-            let widths = [(left, 1), (right, 0)].map(|(band, end)| {
-                let [low, high] = bands[band].sides[end];
-                high - low
-            });
+            let widths =
+                [(left, 1), (right, 0)].map(|(band, end)| Interval::from(bands[band].sides[end]).width());
             (k == left && widths[0] > widths[1]) || (k == right && widths[1] > widths[0])
         })
     };
@@ -43,11 +42,11 @@ pub(super) fn lines(bands: &[Band], own: &[f64]) -> Vec<Vec<f64>> {
 
 /// Adds the lines of a band at one of its ends to another band that meets it there.
 fn carry(bands: &[Band], shares: &mut [Vec<f64>], (from, end): (usize, usize), (to, side): (usize, usize)) {
-    let [low, high] = bands[to].sides[side];
-    let places: Vec<f64> = shares[from].iter().map(|&share| between(bands[from].sides[end], share)).collect();
+    let [own, other] = [bands[from].sides[end], bands[to].sides[side]].map(Interval::from);
+    let places: Vec<f64> = shares[from].iter().map(|&share| between(own, share)).collect();
     let shares = &mut shares[to];
     for eta in places {
-        let share = 2.0 * (eta - low) / (high - low) - 1.0;
+        let share = 2.0 * (eta - other.low) / other.width() - 1.0;
         let k = shares.partition_point(|&other| other < share);
         let near = |other: Option<&f64>| other.is_some_and(|other| (other - share).abs() <= 2.0 * ONE_LINE);
         // If two lines are one, the line of the receiving band is kept.
@@ -80,8 +79,8 @@ impl BandMeeting {
             let mut width = 0.0f64;
             for (other, shares) in bands.iter().zip(shares) {
                 for end in (0..2).filter(|&end| other.xi[end] == xi) {
-                    let side = other.sides[end];
-                    width = width.max(side[1] - side[0]);
+                    let side = Interval::from(other.sides[end]);
+                    width = width.max(side.width());
                     eta.extend(shares.iter().map(|&share| between(side, share)));
                 }
             }
@@ -100,7 +99,7 @@ impl BandMeeting {
         band: &Band,
         shares: &[f64],
     ) -> Vec<usize> {
-        let side = band.sides[usize::from(self.xi == band.xi[1])];
+        let side = Interval::from(band.sides[usize::from(self.xi == band.xi[1])]);
         let mut evaluator = Evaluator::new(placement);
         let place = |share: &f64| {
             let eta = between(side, *share);
@@ -120,12 +119,12 @@ impl BandMeeting {
 }
 
 /// Returns η at a share of a slice; the share is −1 at its lower end and 1 at its upper end.
-pub(super) fn between([low, high]: [f64; 2], share: f64) -> f64 {
+pub(super) fn between(slice: Interval, share: f64) -> f64 {
     if share == -1.0 {
-        low
+        slice.low
     } else if share == 1.0 {
-        high
+        slice.high
     } else {
-        low + (high - low) / 2.0 * (1.0 + share)
+        slice.low + slice.width() / 2.0 * (1.0 + share)
     }
 }

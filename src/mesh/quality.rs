@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::strips::StripMesh;
 use super::surfaces::Surface;
 use super::triangles::TriangleMesh;
+use crate::numerics::interval::Interval;
 
 /// The least, largest and mean value over all cells.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -68,10 +69,9 @@ impl Quality {
 
     fn of(shapes: impl Iterator<Item = CellShape>) -> Option<Self> {
         let shapes: Vec<CellShape> = shapes.collect();
-        let spread = |value: fn(&CellShape) -> f64| Spread {
-            min: shapes.iter().map(value).fold(f64::INFINITY, f64::min),
-            max: shapes.iter().map(value).fold(f64::NEG_INFINITY, f64::max),
-            mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64,
+        let spread = |value: fn(&CellShape) -> f64| {
+            let Interval { low: min, high: max } = Interval::around(shapes.iter().map(value));
+            Spread { min, max, mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64 }
         };
         (!shapes.is_empty()).then(|| Self {
             cells: shapes.len(),

@@ -6,6 +6,7 @@ use nalgebra::{Point2, Point3};
 
 use super::surfaces::wheel_point;
 use crate::lofted::{FramedLoft, SPACING};
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Profile, Station, trace};
 
@@ -85,8 +86,7 @@ impl BodyShell {
         let (middle, deepest) = (lofted.along(), -lofted.laid().radius());
         let mut all = Self { points: Vec::new(), faces: Vec::new() };
         for strip in &lofted.loft().strips {
-            let [from, to] = strip.reach().ends();
-            let [from, to] = [from.max(middle - half_length), to.min(middle + half_length)];
+            let [from, to] = strip.reach().cut(Interval::of(middle).grown(half_length)).ends();
             if from >= to {
                 continue;
             }

@@ -16,6 +16,7 @@ use nalgebra::Point3;
 
 use super::lines::{BandMeeting, between, lines};
 use crate::error::{Error, ErrorKind, Result};
+use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, lanes};
 use crate::patch::{Band, Component, Patch, Places};
 use crate::placement::Placement;
@@ -173,13 +174,13 @@ impl StripBuilder<'_> {
                     Some(meeting) if xi == band.xi[0] || xi == band.xi[1] => {
                         row = meeting.row(&mut self.mesh.points, self.placement, band, shares);
                     }
-                    _ => self.row(shares, xi, [low, high], &mut row),
+                    _ => self.row(shares, xi, Interval::new(low, high), &mut row),
                 }
                 if i > 0 {
                     self.strip(
                         band,
                         shares,
-                        [edges[i - 1], xi],
+                        Interval::new(edges[i - 1], xi),
                         [index, first_strip + i - 1],
                         [&before, &row],
                     );
@@ -195,7 +196,7 @@ impl StripBuilder<'_> {
         &mut self,
         band: &Band,
         shares: &[f64],
-        xi: [f64; 2],
+        xi: Interval,
         [component, strip]: [usize; 2],
         rows: [&[usize]; 2],
     ) {
@@ -223,17 +224,17 @@ impl StripBuilder<'_> {
 
     /// Adds the points of one strip edge between two η \[mm\], ascending in η, and gives their indices. They are equal if the edge has no
     /// width.
-    fn row(&mut self, shares: &[f64], xi: f64, [low, high]: [f64; 2], row: &mut Vec<usize>) {
+    fn row(&mut self, shares: &[f64], xi: f64, eta: Interval, row: &mut Vec<usize>) {
         let points = &mut self.mesh.points;
         let first = points.len();
         let profile = self.placement.rail().section.height(xi);
         let is_swept = self.placement.under().is_none() && self.placement.lofted_rail().is_none();
         row.clear();
-        if low >= high {
-            points.push(Point3::new(xi, low, profile));
+        if eta.low >= eta.high {
+            points.push(Point3::new(xi, eta.low, profile));
             row.resize(shares.len(), first);
         } else {
-            points.extend(shares.iter().map(|&share| Point3::new(xi, between([low, high], share), profile)));
+            points.extend(shares.iter().map(|&share| Point3::new(xi, between(eta, share), profile)));
             row.extend(first..points.len());
         }
         if !is_swept {
@@ -244,23 +245,23 @@ impl StripBuilder<'_> {
 
     /// Computes the moments of a strip's width, over the pieces between all corners of the boundary, even those without a
     /// strip edge.
-    fn moments(&self, band: &Band, xi: [f64; 2]) -> Moments {
+    fn moments(&self, band: &Band, xi: Interval) -> Moments {
         // A mean of values that change sign is computed from an offset. The demanded accuracy then refers to the size of
         // the offset.
-        let offset = band.sides.into_iter().flatten().fold(xi[1] - xi[0], |most, eta| eta.abs().max(most));
+        let offset = band.sides.into_iter().flatten().fold(xi.width(), |most, eta| eta.abs().max(most));
         let weighted = |at: &Places| {
             let [low, high] = &at.edges;
             let width: Lanes = lanes(|k| high[k] - low[k]);
             [
                 width,
-                lanes(|k| (at.xi[k] - xi[0]) * width[k]),
+                lanes(|k| (at.xi[k] - xi.low) * width[k]),
                 lanes(|k| (offset + (low[k] + width[k] / 2.0)) * width[k]),
                 lanes(|k| width[k] * width[k] / 2.0),
             ]
         };
         let demand = [AREA_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND];
-        let [area, along, across, half] = band.integrals(xi, false, weighted, demand);
-        Moments { area, xi: xi[0] + along / area, middle: across / area - offset, half: half / area }
+        let [area, along, across, half] = band.integrals(xi.ends(), false, weighted, demand);
+        Moments { area, xi: xi.low + along / area, middle: across / area - offset, half: half / area }
     }
 }
 

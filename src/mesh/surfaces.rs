@@ -8,6 +8,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3, distance_squared};
 
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::lofted::{FramedLoft, Strip, joined};
+use crate::numerics::interval::Interval;
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::profile::{Side, Station};
@@ -24,7 +25,7 @@ const FACET_SHARE: f64 = 0.01;
 
 /// Limits of that distance, as shares of the window's longer side. Below the first one a file has a million facets; above
 /// the second one the facets are visible.
-const FACET_LIMITS: [f64; 2] = [1e-6, 1e-4];
+const FACET_LIMITS: Interval = Interval::new(1e-6, 1e-4);
 
 /// Largest distance of the wheel's surface before and behind C, as a share of the rolling radius. Towards the whole radius
 /// the surface becomes vertical.
@@ -76,10 +77,9 @@ impl Surface {
         let reach = WIDEST * placement.rolling_radius().min(placement.rail().axle_distance());
         let window = Window { eta: window.eta.map(|eta| eta.clamp(-reach, reach)), ..*window };
         let side = (window.xi[1] - window.xi[0]).max(window.eta[1] - window.eta[0]);
-        let [finest, coarsest] = FACET_LIMITS.map(|share| share * side);
-        let wanted =
-            approach.filter(|approach| *approach > 0.0).map_or(coarsest, |approach| FACET_SHARE * approach);
-        let tolerance = wanted.clamp(finest, coarsest);
+        let limits = FACET_LIMITS.map(|share| share * side);
+        let wanted = approach.filter(|approach| *approach > 0.0).map(|approach| FACET_SHARE * approach);
+        let tolerance = wanted.map_or(limits.high, |wanted| limits.nearest(wanted));
         Ok([Self::rail(placement, &window, tolerance)?, Self::wheel(placement, &window, tolerance)?])
     }
 
@@ -98,7 +98,7 @@ impl Surface {
         if let Some(lofted) = placement.lofted_rail() {
             return Self::lofted(lofted, window);
         }
-        let stations = trace(placement.rail(), window.xi, tolerance)?;
+        let stations = trace(placement.rail(), window.xi.into(), tolerance)?;
         let radius = placement.rolling_radius();
         let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)?
             .into_iter()
@@ -125,13 +125,12 @@ impl Surface {
                 |strip: &&Strip| strip.part == strips[part].part && strip.cells() == strips[part].cells();
             strips.iter().filter(same).find(|strip| strip.holds(y))
         };
-        let eta = [window.eta[0].min(0.0), window.eta[1].max(0.0)];
-        let [from, to] = eta.map(|eta| lofted.along_at(0.0, eta));
-        let steps = ((to - from) / CELL).ceil().max(1.0);
-        let mut places: Vec<f64> =
-            (0..=steps as usize).map(|k| from + (to - from) * k as f64 / steps).chain([along]).collect();
-        let ends =
-            strips.iter().flat_map(|strip| strip.reach().ends()).filter(|end| (from..=to).contains(end));
+        let [xi, eta] = [window.xi, window.eta].map(|side| side.with(0.0));
+        let reach = eta.map(|eta| lofted.along_at(0.0, eta));
+        let steps = (reach.width() / CELL).ceil().max(1.0);
+        let step = |k: usize| reach.low + reach.width() * k as f64 / steps;
+        let mut places: Vec<f64> = (0..=steps as usize).map(step).chain([along]).collect();
+        let ends = strips.iter().flat_map(|strip| strip.reach().ends()).filter(|end| reach.contains(*end));
         places.extend(ends);
         places.sort_by(f64::total_cmp);
         places.dedup();
@@ -141,8 +140,7 @@ impl Surface {
         let ahead = places[middle..].iter().take_while(|y| whole(y)).count();
         let places = &places[middle - behind..middle + ahead];
         let inside = |&(part, u): &(usize, f64)| {
-            let [xi, ..] = lofted.seen_from(strips[part].point(u, along).at, along);
-            window.xi[0].min(0.0) <= xi && xi <= window.xi[1].max(0.0)
+            xi.contains(lofted.seen_from(strips[part].point(u, along).at, along)[0])
         };
         let all = parts.iter().flat_map(|&part| (0..=strips[part].cells()).map(move |k| (part, k as f64)));
         let nodes: Vec<(usize, f64)> = all.filter(inside).collect();
@@ -170,7 +168,7 @@ impl Surface {
             return Self::lofted(lofted, window);
         }
         let own = in_wheel_directions(placement, window);
-        let stations = trace(placement.wheel(), own.xi, tolerance / 2.0)?;
+        let stations = trace(placement.wheel(), own.xi.into(), tolerance / 2.0)?;
         let radii = || stations.iter().map(|s| placement.wheel_radius() - s.z);
         let [smallest, largest] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
         let psi = angles(own.eta, smallest, largest, tolerance / 2.0)?;
@@ -275,13 +273,10 @@ fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
     let skew = placement.skew_rotation();
     let corners = window.xi.into_iter().flat_map(|xi| window.eta.map(|eta| Vector2::new(xi, eta)));
     let own: Vec<_> = corners.map(|corner| skew.inverse_transform_vector(&corner)).collect();
-    let range = |k: usize| {
-        own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
-    };
-    let (xi, eta) = (range(0), range(1));
-    let (axle, widest) = (placement.rolling_radius(), eta[0].abs().max(eta[1].abs()));
+    let [xi, eta] = [0, 1].map(|k| Interval::around(own.iter().map(|p| p[k])));
+    let (axle, widest) = (placement.rolling_radius(), eta.size());
     let aside = widest * widest / (axle + axle.hypot(widest)) * placement.wheel().section.frame.sin;
-    Window { xi: [xi[0] - aside.max(0.0), xi[1] - aside.min(0.0)], eta }
+    Window { xi: [xi.low - aside.max(0.0), xi.high - aside.min(0.0)], eta: eta.ends() }
 }
 
 /// Refuses more points than a surface may have.

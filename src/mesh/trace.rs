@@ -4,6 +4,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::placement::Body;
 use crate::profile::{Arc, Polynomial, Segment, Shape, Station};
@@ -24,16 +25,16 @@ const DEEPEST: u32 = 20;
 ///
 /// # Errors
 /// More than 10⁵ points.
-pub(super) fn trace(body: &Body, xi: [f64; 2], tolerance: f64) -> Result<Vec<Station>> {
+pub(super) fn trace(body: &Body, xi: Interval, tolerance: f64) -> Result<Vec<Station>> {
     let tracer = Tracer { body, tolerance };
     let contact = tracer.contact_share();
     let mut stations = Vec::new();
-    if xi[0] < 0.0 {
-        stations.extend(tracer.walk(contact, xi[0], false)?.into_iter().rev());
+    if xi.low < 0.0 {
+        stations.extend(tracer.walk(contact, xi.low, false)?.into_iter().rev());
     }
     stations.push(body.point.station);
-    if xi[1] > 0.0 {
-        stations.extend(tracer.walk(contact, xi[1], true)?);
+    if xi.high > 0.0 {
+        stations.extend(tracer.walk(contact, xi.high, true)?);
     }
     Ok(stations)
 }

@@ -65,6 +65,12 @@ impl Interval {
         self.high - self.low
     }
 
+    /// Gives the largest size of the interval's numbers.
+    #[inline(always)]
+    pub fn size(self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
     /// Gives the middle.
     #[inline(always)]
     pub fn middle(self) -> f64 {

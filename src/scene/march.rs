@@ -13,6 +13,7 @@ use crate::case::{Case, MarchCase, Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};
 use crate::lofted::{Loft, LoftedBody, LoftedWheel, section};
 use crate::numerics::bodies::Bodies;
+use crate::numerics::interval::Interval;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 use crate::profile::Side;
 use crate::search::{March, ONE_CONTACT, Selection, SideOnTrack, WheelsetOnTrack};
@@ -33,7 +34,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
     let (position, within) = (position(wheelset)?, within(wheelset.within)?);
     let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
     let warnings = doubts_of_keys(scene).iter().map(ToString::to_string).collect();
-    let mut lists = Lists { reach: [f64::NEG_INFINITY, f64::INFINITY], warnings };
+    let mut lists = Lists { reach: Interval::ALL, warnings };
     let (own, right) = sides.side(true, &mut lists)?;
     let (system, left) = if scene.left.is_none() && scene.right.is_none() {
         (WheelsetOnTrack::symmetrical(right), None)
@@ -42,8 +43,8 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
         (WheelsetOnTrack::of_sides(left, right), Some(other))
     };
     let profiles = Profiles { right: own, left };
-    let [from, to] = lists.reach;
-    if from == f64::NEG_INFINITY && !system.turning() {
+    let reach = lists.reach;
+    if reach.low == f64::NEG_INFINITY && !system.turning() {
         let expected = "a rail that varies: a list .slcs of slices without `along`; or such a wheel";
         return Err(Error::new("rail", "rails of one profile each", expected, "or take `wheelrail sweep`"));
     }
@@ -52,12 +53,12 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
         let expected = "no pitch of wheels of one profile each";
         return Err(Error::new("wheelset: pitch", format!("{pitch} rad"), expected, "remove it"));
     }
-    if from >= to {
+    if reach.low >= reach.high {
         let found = "rails whose lists have no place in common";
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }
     let selection = Selection { within, apart: ONE_CONTACT };
-    let march = March { system, position, selection, reach: lists.reach.into(), pitch };
+    let march = March { system, position, selection, reach, pitch };
     let loaded = loaded(scene, &profiles)?;
     Ok(MarchCase { march, profiles, loaded, warnings: lists.warnings, echo: echo(scene, "march") })
 }
@@ -142,7 +143,7 @@ fn on_track(
 
 /// What the lists of both sides say.
 struct Lists {
-    reach: [f64; 2],
+    reach: Interval,
     warnings: Vec<String>,
 }
 
@@ -156,8 +157,7 @@ impl Lists {
     }
 
     fn take(&mut self, loft: &Loft, place: &str) {
-        let [from, to] = loft.reach().ends();
-        self.reach = [self.reach[0].max(from), self.reach[1].min(to)];
+        self.reach = self.reach.cut(loft.reach());
         self.warnings.extend(loft.warnings.iter().map(|warning| format!("{place}: {warning}")));
     }
 }

@@ -9,7 +9,7 @@ use wheelrail::load::{curvatures_at, quadratic_form_at};
 use wheelrail::scene;
 use wheelrail::search::SideTouch;
 use wheelrail::table::{ContactTable, Quantity};
-use wheelrail::{Position, Result, Selection};
+use wheelrail::{Interval, Position, Result, Selection};
 
 /// Vertical load on each wheel \[N\].
 const LOAD: f64 = 60e3;
@@ -143,7 +143,7 @@ fn tables_err_by_no_more_than_they_state() -> Result<()> {
         ("unlike sides", case(DRAWN, "", SIDES)?),
     ];
     for (name, case) in &cases {
-        let made = table(case, RANGE, None, 1e-3, true)?;
+        let made = table(case, RANGE.into(), None, 1e-3, true)?;
         let over = made.quantities().iter().find(|quantity| quantity.error > quantity.tolerance);
         assert!(over.is_none(), "{name}: {over:?}");
         compare(name, case, &made)?;
@@ -159,7 +159,7 @@ fn tables_over_yaw_err_by_no_more_than_they_state() -> Result<()> {
         ("unlike sides, over yaw", case(DRAWN, "", SIDES)?, [-2.0, 2.0], [0.001, 0.02]),
     ];
     for (name, case, lateral, yaw) in &cases {
-        let made = table(case, *lateral, Some(*yaw), 1e-3, true)?;
+        let made = table(case, Interval::from(*lateral), Some(Interval::from(*yaw)), 1e-3, true)?;
         let over = made.quantities().iter().find(|quantity| quantity.error > quantity.tolerance);
         assert!(over.is_none(), "{name}: {over:?}");
         assert!(made.about().beside_curves() <= 1e-6);
@@ -176,11 +176,11 @@ fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
     let case = case(DRAWN, ", yaw = 0.002", "")?;
     let places = random(RANGE, YAWS);
     let [lateral, yaws] = [0, 1].map(|k| places.iter().map(|place| place[k]).collect::<Vec<f64>>());
-    for yaw in [None, Some([0.0, 0.01])] {
+    for yaw in [None, Some(Interval::new(0.0, 0.01))] {
         let on = |threads: usize| -> Result<(String, Vec<u64>)> {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let made = table(&case, RANGE, yaw, 1e-3, true)?;
+                let made = table(&case, RANGE.into(), yaw, 1e-3, true)?;
                 let numbers: Vec<usize> = (0..made.quantities().len()).rev().collect();
                 let mut all = vec![0.0; numbers.len() * lateral.len()];
                 let yaws = if yaw.is_some() { yaws.as_slice() } else { &made.about().yaw.ends()[..1] };

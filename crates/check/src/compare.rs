@@ -14,6 +14,7 @@ use super::relation::{Above, RELATION, normals_between};
 use super::report::{Counts, Differences, Distances, Orders, Report};
 use super::request::{Answer, Request};
 use super::sampler::{SampledCurve, SampledSurface};
+use wheelrail::Interval;
 use wheelrail::error::{Error, ErrorKind, Result};
 use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
@@ -256,7 +257,8 @@ impl<'a> Tally<'a> {
         self.orders.extend(both().filter_map(|h| h.order));
         let s = answer.separation;
         let rounding = self.rounding(least_normal);
-        let measured = gap(wheel.iter().map(|h| [h.zeta; 2]), rail.iter().map(|h| [h.zeta; 2]));
+        let measured =
+            gap(wheel.iter().map(|h| Interval::of(h.zeta)), rail.iter().map(|h| Interval::of(h.zeta)));
         let floor = self.floor(|f| f.ray_mm) / least_normal;
         self.separation.push((beyond(s, measured), SAFETY * floor.max(estimate) + rounding, at));
         let bracket = gap(wheel.iter().map(|h| h.bracket), rail.iter().map(|h| h.bracket));
@@ -265,7 +267,7 @@ impl<'a> Tally<'a> {
             self.outside += 1;
         }
         if let ([rail], [wheel]) = (rail, wheel) {
-            self.bracket = self.bracket.max(bracket[1] - bracket[0]);
+            self.bracket = self.bracket.max(bracket.width());
             let points = [rail, wheel].map(|h| Vector::new(at[0], at[1], h.zeta));
             self.near.push(ComparedFeet { at, separation: s, places: [rail.place, wheel.place], points });
         }
@@ -372,22 +374,19 @@ impl DistanceRelation<'_> {
         };
         let n = normals_between(solid, above, &closest, self.tally.rounding(1.0));
         let interval = n.map(|n| above.separation * n);
-        self.widest = self.widest.max(interval[1] - interval[0]);
+        self.widest = self.widest.max(interval.width());
         let floor = self.tally.floor(|f| f.closest_mm);
-        let allowed = SAFETY * (floor + closest.error) + self.tally.rounding(n[0].max(STEEPEST));
+        let allowed = SAFETY * (floor + closest.error) + self.tally.rounding(n.low.max(STEEPEST));
         self.all.push((beyond(closest.distance, interval), allowed, above.at));
     }
 }
 
-/// Returns \[least, largest\] of wheel − rail.
-fn gap(wheel: impl Iterator<Item = [f64; 2]>, rail: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let empty = [f64::INFINITY, f64::NEG_INFINITY];
-    let (wheel, rail) = (wheel.fold(empty, join), rail.fold(empty, join));
-    [wheel[0] - rail[1], wheel[1] - rail[0]]
+/// Returns the range of wheel − rail.
+fn gap(wheel: impl Iterator<Item = Interval>, rail: impl Iterator<Item = Interval>) -> Interval {
+    wheel.fold(Interval::NONE, Interval::hull) + -rail.fold(Interval::NONE, Interval::hull)
 }
 
 /// Returns how far a value is outside an interval; NaN if any of them is.
-fn beyond(value: f64, [low, high]: [f64; 2]) -> f64 {
-    largest([low - value, value - high])
+fn beyond(value: f64, range: Interval) -> f64 {
+    largest([range.low - value, value - range.high])
 }

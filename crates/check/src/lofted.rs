@@ -8,6 +8,7 @@ use std::fmt;
 use std::time::Instant;
 
 use serde::Serialize;
+use wheelrail::Interval;
 use wheelrail::error::{Error, Result};
 use wheelrail::lofted::{FramedLoft, Strip};
 use wheelrail::placement::Placement;
@@ -341,14 +342,13 @@ impl<'a> MeshedLoft<'a> {
             (place, zeta) = (parameters([&u, &y], &hit), hit.point.z);
             share *= CLOSER;
         }
-        let [first, last] = strip.reach().ends();
-        let inside = |at: f64, [from, to]: [f64; 2], least: f64| at > from + least && at < to - least;
-        let own = inside(place[0], [0.0, strip.cells() as f64], NORMAL_CELL);
-        if !(own && inside(place[1], [first, last], NORMAL_CELL * ALONG)) {
+        let inside = |at: f64, range: Interval, least: f64| at > range.low + least && at < range.high - least;
+        let own = inside(place[0], Interval::new(0.0, strip.cells() as f64), NORMAL_CELL);
+        if !(own && inside(place[1], strip.reach(), NORMAL_CELL * ALONG)) {
             return Met::Steep;
         }
-        let own = inside(place[0].fract(), [0.0, 1.0], NORMAL_CELL);
-        let smooth = own && inside(place[1], strip.bay_at(place[1]).y().ends(), NORMAL_CELL * ALONG);
+        let own = inside(place[0].fract(), Interval::new(0.0, 1.0), NORMAL_CELL);
+        let smooth = own && inside(place[1], strip.bay_at(place[1]).y(), NORMAL_CELL * ALONG);
         let direction = |share: f64| {
             let [h, k] = [NORMAL_CELL * share, NORMAL_CELL * ALONG * share];
             let corner = |a: f64, b: f64| self.point(strip, place[0] + a * h, place[1] + b * k);

@@ -2,6 +2,7 @@
 
 use super::meshes::{Hit, Mesh, Vector};
 use super::sampler::SampledSurface;
+use wheelrail::Interval;
 
 /// A mesh over the product of ascending parameter values.
 pub(super) struct CurveMesh {
@@ -41,11 +42,11 @@ impl CurveMesh {
     /// Returns whether a place is in the outer ring of cells, so that the true place may be outside; ends of
     /// the curve (0 and `length`) are no border.
     pub fn at_border(&self, place: &SurfacePoint, length: f64) -> bool {
-        let outer = |x: &[f64], value: f64, ends: [f64; 2]| {
+        let outer = |x: &[f64], value: f64, whole: Interval| {
             let last = x.len() - 1;
-            (value < x[1] && x[0] > ends[0]) || (value > x[last - 1] && x[last] < ends[1])
+            (value < x[1] && x[0] > whole.low) || (value > x[last - 1] && x[last] < whole.high)
         };
-        outer(&self.t, place.t, [0.0, length]) || outer(&self.v, place.v, [f64::NEG_INFINITY, f64::INFINITY])
+        outer(&self.t, place.t, Interval::new(0.0, length)) || outer(&self.v, place.v, Interval::ALL)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::request::Request;
 use super::sampler::SampledSurface;
+use wheelrail::Interval;
 use wheelrail::internal::{bracketed, turning_points};
 use wheelrail::patch::Slicer;
 use wheelrail::placement::Placement;
@@ -21,32 +22,26 @@ pub(super) fn spread_points(
     rail: &SampledSurface,
     wheel: &SampledSurface,
 ) -> Vec<[f64; 2]> {
-    let window = &request.window;
-    let at = |[a, b]: [f64; 2], k: usize, n: usize| {
-        if k + 1 == n { b } else { a + (b - a) * k as f64 / (n - 1) as f64 }
+    let [xi, eta] = [request.window.xi, request.window.eta].map(Interval::from);
+    let at = |range: Interval, k: usize, n: usize| {
+        if k + 1 == n { range.high } else { range.low + range.width() * k as f64 / (n - 1) as f64 }
     };
     let mut all: Vec<[f64; 2]> = (0..GRID[0] * GRID[1])
-        .map(|k| [at(window.xi, k / GRID[1], GRID[0]), at(window.eta, k % GRID[1], GRID[1])])
+        .map(|k| [at(xi, k / GRID[1], GRID[0]), at(eta, k % GRID[1], GRID[1])])
         .collect();
-    all.extend(joints(rail, window.eta));
-    all.extend(joints(wheel, window.eta));
+    all.extend(joints(rail, eta));
+    all.extend(joints(wheel, eta));
     all.extend(boundary(placement, request));
-    let inside = |p: &[f64; 2]| within(p[0], window.xi) && within(p[1], window.eta);
-    all.retain(inside);
+    all.retain(|p| xi.contains(p[0]) && eta.contains(p[1]));
     all
-}
-
-fn within(value: f64, [low, high]: [f64; 2]) -> bool {
-    value >= low && value <= high
 }
 
 /// Returns the deepest midplane point, the tips, and points of the boundary s = δ as the program finds them.
 ///
 /// Slices are enough. If the wheel is yawed, loops with their areas cost far more than the whole check.
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
-    let Some([first, last]) = placement.overlap() else { return Vec::new() };
-    let [from, to] = request.window.xi;
-    let (from, to) = (from.max(first), to.min(last));
+    let Some(overlap) = placement.overlap() else { return Vec::new() };
+    let [from, to] = Interval::from(request.window.xi).cut(overlap.into()).ends();
     if from >= to {
         return Vec::new();
     }
@@ -74,10 +69,10 @@ fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
 }
 
 /// Returns points over the joints of one body, in the midplane and towards both edges of the window.
-fn joints(surface: &SampledSurface, eta: [f64; 2]) -> Vec<[f64; 2]> {
+fn joints(surface: &SampledSurface, eta: Interval) -> Vec<[f64; 2]> {
     let ends = surface.curves.iter().enumerate().flat_map(|(k, c)| [(k, 0.0), (k, c.length)]);
     ends.flat_map(|(curve, t)| {
-        [0.0, 0.5 * eta[0], 0.75 * eta[1]].map(|v| {
+        [0.0, 0.5 * eta.low, 0.75 * eta.high].map(|v| {
             let point = surface.point(curve, t, v);
             [point.x, point.y]
         })

@@ -8,6 +8,7 @@
 use super::meshes::{RayOrigin, Vector};
 use super::patch::{CurveMesh, SurfacePoint};
 use super::sampler::SampledSurface;
+use wheelrail::Interval;
 
 /// Cells of the first level, as a share of the local scale (radius or length). Larger cells leave terms of
 /// high order, smaller ones rounding.
@@ -38,7 +39,7 @@ pub(super) struct Height {
     /// Estimated error of the extrapolation \[mm\].
     pub error: f64,
     /// Rigorous bounds of ζ \[mm\].
-    pub bracket: [f64; 2],
+    pub bracket: Interval,
     /// log₂ of the ratio of successive differences, if these are clear of rounding.
     pub order: Option<f64>,
     /// Extrapolated unit normal, up where the surface faces the other body.
@@ -141,7 +142,7 @@ fn around(surface: &SampledSurface, place: SurfacePoint, [h, k]: [f64; 2]) -> Op
 }
 
 /// Returns a rigorous bracket of ζ, and the least ζ component of the normal around the foot.
-fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> Option<([f64; 2], f64)> {
+fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> Option<(Interval, f64)> {
     let h = BRACKET_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let patch = around(surface, place, [h, k])?;
@@ -153,7 +154,7 @@ fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> 
         return None;
     }
     let half = apart / least + 4.0 * rounding(surface, least);
-    Some(([hit.point.z - half, hit.point.z + half], least))
+    Some((Interval::of(hit.point.z).grown(half), least))
 }
 
 /// Returns the normal of the cell centred on the place, its diagonals' cross product: it is even in h, so

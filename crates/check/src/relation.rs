@@ -11,6 +11,7 @@ use super::closest::Closest;
 use super::meshes::Vector;
 use super::patch::SurfacePoint;
 use super::sampler::{SampledCurve, SampledSurface};
+use wheelrail::Interval;
 
 /// The relation in words.
 pub const RELATION: &str = "s·min n ≤ d ≤ s·max n, where n are the ζ components of the body's unit normals up to \
@@ -34,29 +35,29 @@ pub(super) struct Above {
     pub foot: SurfacePoint,
 }
 
-/// Returns \[least, largest\] n between the foot of `above` and the closest point of `solid`.
+/// Returns the range of n between the foot of `above` and the closest point of `solid`.
 ///
 /// If the closest point is a joint or an end, the direction to it counts as well, because any direction between the normals
 /// of the neighbours can be the closest one's. An end that the closest point only passes on its way is not seen.
-pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, rounding: f64) -> [f64; 2] {
+pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, rounding: f64) -> Interval {
     let surface = &solid.surface;
     let foot = surface.point(above.foot.curve, above.foot.t, above.foot.v);
     let h = (closest.point.z - foot.z).abs() + closest.error + rounding;
     let reach = (2.0 * above.separation * h).sqrt() + rounding;
-    let [least, most] = normals_within(surface, &above.foot, reach);
+    let within = normals_within(surface, &above.foot, reach);
     if !solid.at_joint(&closest.place) {
-        return [least, most];
+        return within;
     }
     let direct = (above.point.z - closest.point.z).abs() / closest.distance;
     // The direction of a distance of 0 is NaN and stays NaN.
-    if direct.is_nan() { [f64::NAN; 2] } else { [least.min(direct), most.max(direct)] }
+    if direct.is_nan() { Interval::of(f64::NAN) } else { within.with(direct) }
 }
 
-/// Returns \[least, largest\] ζ component of the unit normals of all points up to `reach` from a place.
-fn normals_within(surface: &SampledSurface, foot: &SurfacePoint, reach: f64) -> [f64; 2] {
+/// Returns the range of the ζ component of the unit normals of all points up to `reach` from a place.
+fn normals_within(surface: &SampledSurface, foot: &SurfacePoint, reach: f64) -> Interval {
     let centre = surface.curves[foot.curve].point(foot.t);
     let near = Disc { centre, reach };
-    let own = [surface.curves[foot.curve].angle(foot.t); 2];
+    let own = Interval::of(surface.curves[foot.curve].angle(foot.t));
     let curves = surface.curves.iter().filter(|curve| near.may_hold(curve));
     let tilts = curves.fold(own, |hull, curve| near.tilts(curve, [0.0, curve.length], HALVINGS, hull));
     surface.normals_between(tilts, foot.v, centre[1], reach)
@@ -79,7 +80,7 @@ impl Disc {
 
     /// Returns the hull widened by the tangent angles \[rad\] of the curve inside the disc, from parameter a
     /// to b.
-    fn tilts(&self, curve: &SampledCurve, [a, b]: [f64; 2], halvings: u32, hull: [f64; 2]) -> [f64; 2] {
+    fn tilts(&self, curve: &SampledCurve, [a, b]: [f64; 2], halvings: u32, hull: Interval) -> Interval {
         let (middle, half) = (f64::midpoint(a, b), (b - a) / 2.0);
         let bend = curve.bend(middle, half);
         let speed = curve.speed(middle);
@@ -93,7 +94,7 @@ impl Disc {
             return self.tilts(curve, [middle, b], halvings - 1, left);
         }
         let (angle, turn) = (curve.angle(middle), bend * half / least_speed);
-        [hull[0].min(angle - turn), hull[1].max(angle + turn)]
+        hull.hull(Interval::of(angle).grown(turn))
     }
 }
 
@@ -119,7 +120,7 @@ mod tests {
         let surface = SampledSurface::rail(&placement);
         let foot = SurfacePoint { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
         for reach in [0.3, 0.9] {
-            let [least, most] = normals_within(&surface, &foot, reach);
+            let [least, most] = normals_within(&surface, &foot, reach).ends();
             let component = |x: f64| 1.0 / (1.0 + (0.03 * x * x - 0.03).powi(2)).sqrt();
             // The wave is steepest at its inflection. Only x = 0 shows it, and neither end does.
             assert!(least <= component(0.0) && least > component(0.0) - 1e-4, "{least}");

@@ -5,6 +5,7 @@
 //! measured from the contact point, so that the axle's distance costs no digits.
 
 use super::meshes::Vector;
+use wheelrail::Interval;
 use wheelrail::internal::{Twice, recentred};
 use wheelrail::placement::{Body, Generator, Placement};
 use wheelrail::profile::{Polynomial, Segment, Shape, Station};
@@ -251,26 +252,24 @@ impl SampledSurface {
         reach * std::f64::consts::FRAC_PI_2
     }
 
-    /// Returns \[least, largest\] ζ component of the unit normals of points up to `reach` from one at v and
+    /// Returns the range of the ζ component of the unit normals of points up to `reach` from one at v and
     /// height `z` over C, if the profile's tangents have angles \[rad\] between `tilts`.
     ///
     /// Method: n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
-    pub fn normals_between(&self, tilts: [f64; 2], v: f64, z: f64, reach: f64) -> [f64; 2] {
+    pub fn normals_between(&self, tilts: Interval, v: f64, z: f64, reach: f64) -> Interval {
         let turned = self.turned.map_or([0.0; 2], |Turned { axle, .. }| {
             // The chord of an angle is at least 2/π of its arc.
             let least = (axle - z).abs() - reach;
             let (turn, away) = ((v / axle).abs(), reach * std::f64::consts::FRAC_PI_2 / least);
             [(turn - away).max(0.0), turn + away]
         });
-        let mut out = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut out = Interval::NONE;
         for cos in turned.map(f64::cos) {
             let (up, along) = (cos * self.cos, self.sin);
             let crest = along.atan2(up);
             let at = |tilt: f64| up * tilt.cos() + along * tilt.sin();
-            let highest = (tilts[0] < crest && crest < tilts[1]).then(|| up.hypot(along));
-            for n in tilts.map(at).into_iter().chain(highest) {
-                out = [out[0].min(n), out[1].max(n)];
-            }
+            let highest = (tilts.low < crest && crest < tilts.high).then(|| up.hypot(along));
+            out = tilts.ends().map(at).into_iter().chain(highest).fold(out, Interval::with);
         }
         out
     }

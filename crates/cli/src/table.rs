@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, counted, folder_of, print};
+use wheelrail::Interval;
 use wheelrail::case::{TABLE_FOLDER, table as tabulate, write_table};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::Folder;
@@ -60,10 +61,11 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
 }
 
 /// Reads FROM:TO.
-fn range(flag: &str, text: &str, expected: &str, example: &str) -> Result<[f64; 2]> {
+fn range(flag: &str, text: &str, expected: &str, example: &str) -> Result<Interval> {
     let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
     parts
         .and_then(|parts| <[f64; 2]>::try_from(parts).ok())
+        .map(Interval::from)
         .ok_or_else(|| Error::new(flag, text, expected, format!("for example {flag} {example}")))
 }
 

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use wheelrail::case::{self, TABLE_FOLDER, write_table};
 use wheelrail::files::{Folder, read_text};
 use wheelrail::table::Beginning;
-use wheelrail::{Error, scene};
+use wheelrail::{Error, Interval, scene};
 
 use crate::arrays::{unset, values};
 use crate::errors::{OrRaise, exception};
@@ -53,7 +53,7 @@ pub(crate) fn table(
         let scene = scene::load(&path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let case = scene::resolve(&scene, path.parent().unwrap_or(Path::new(".")), &name)?;
-        let made = case::table(&case, lateral, yaw, tolerance, hertz)?;
+        let made = case::table(&case, lateral.into(), yaw.map(Interval::from), tolerance, hertz)?;
         watch.go_on()?;
         if let Some(out) = out {
             let folder = Folder::create(&out, TABLE_FOLDER)?;

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::inclined::{RADIUS, inclined_pair};
 use super::random::Random;
+use wheelrail::Interval;
 use wheelrail::error::{Error, Result};
 use wheelrail::load::{Elastic, curvatures, effective_modulus};
 use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
@@ -30,9 +31,9 @@ const APPROACH: f64 = 0.08;
 const LOAD: f64 = 1e5;
 /// Range of x in which rails are compared \[mm\]: the running surface. A patch on a tread never lies below the gauge
 /// corner.
-const RAIL_ZONE: [f64; 2] = [-33.0, 33.0];
+const RAIL_ZONE: Interval = Interval::new(-33.0, 33.0);
 /// Range of x in which wheels are compared \[mm\]. A patch on a tread never lies on the flange.
-const WHEEL_ZONE: [f64; 2] = [-38.0, 50.0];
+const WHEEL_ZONE: Interval = Interval::new(-38.0, 50.0);
 /// Distance of the marks that are compared \[mm\]; not a multiple of a spacing.
 const MARKS: f64 = 0.071;
 /// Least curvature \[1/mm\] by which errors of curvature are divided: that of the crown. A tread has places without
@@ -129,7 +130,7 @@ struct DrawnBody {
 impl DrawnBody {
     fn new(profile: Profile, side: Side) -> Self {
         let zone = if side == Side::Rail { RAIL_ZONE } else { WHEEL_ZONE };
-        let inside = |mark: &Mark| (zone[0]..=zone[1]).contains(&mark.station.x) && mark.station.cos > 0.2;
+        let inside = |mark: &Mark| zone.contains(mark.station.x) && mark.station.cos > 0.2;
         let marks = trace(&profile, MARKS).into_iter().filter(inside).collect();
         let fine = trace(&profile, 0.01);
         Self { profile, side, marks, fine }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::document::document;
 use super::numbers::floats;
 use super::view::PagePair;
+use crate::numerics::interval::Interval;
 
 /// The bundled script; its sources are in `source/sweep.js` and the files that this imports.
 const SCRIPT: &str = include_str!("sweep.js");
@@ -31,7 +32,7 @@ pub struct SweepPanel {
     /// The curves.
     pub curves: Vec<SweepCurve>,
     /// Smallest and largest value that is shown; `None` shows all.
-    pub shown: Option<[f64; 2]>,
+    pub shown: Option<Interval>,
 }
 
 /// A section in pieces.

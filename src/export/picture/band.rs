@@ -2,6 +2,7 @@
 
 use super::page::{BLUE, Colour, Page, Pen};
 use super::panel::{Panel, airy, range};
+use crate::numerics::interval::Interval;
 
 const MEAN: Pen = Pen::new(BLUE, 1.4);
 const ALL: Colour = [222, 233, 245];
@@ -25,7 +26,7 @@ pub struct BandPoint {
     /// Standard deviation along the normal.
     pub spread: f64,
     /// Least and largest offset along the normal.
-    pub range: [f64; 2],
+    pub range: Interval,
 }
 
 /// The content of the picture.
@@ -42,17 +43,18 @@ pub struct BandPicture<'a> {
 impl BandPicture<'_> {
     /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
-        let largest = self.points.iter().flat_map(|point| point.range).map(f64::abs).fold(0.0, f64::max);
+        let largest =
+            self.points.iter().flat_map(|point| point.range.ends()).map(f64::abs).fold(0.0, f64::max);
         let times = MAGNIFIED.into_iter().find(|times| times * largest <= LONGEST).unwrap_or(1.0);
         let offset = |point: &BandPoint, by: f64| [0, 1].map(|k| point.at[k] + times * by * point.normal[k]);
         let edges = |of: fn(&BandPoint) -> [f64; 2]| -> Vec<[[f64; 2]; 2]> {
             self.points.iter().map(|point| of(point).map(|by| offset(point, by))).collect()
         };
-        let (all, spread) = (edges(|point| point.range), edges(|point| [-point.spread, point.spread]));
+        let (all, spread) = (edges(|point| point.range.ends()), edges(|point| [-point.spread, point.spread]));
         let places = || all.iter().flatten();
         let (u, v) = (range(places().map(|p| p[0])), range(places().map(|p| p[1])));
         let (u, v) = (airy(u, 0.02, 0.0), airy(v, 0.06, 0.0));
-        let (top, height) = (112.0, (WIDTH * (v[1] - v[0]) / (u[1] - u[0])).clamp(160.0, 560.0));
+        let (top, height) = (112.0, (WIDTH * v.width() / u.width()).clamp(160.0, 560.0));
         let panel = Panel::true_scale([LEFT, top, WIDTH, height], u, v);
         let mut page = Page::new(self.title, self.about);
         let heading = format!("Spread along the normal, × {times}; the largest offset is {largest:.3} mm");

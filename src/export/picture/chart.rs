@@ -2,6 +2,7 @@
 
 use super::page::{Colour, INK, Page, Pen, SMALL, polygon};
 use super::panel::{Panel, extremes};
+use crate::numerics::interval::Interval;
 use std::f64::consts::FRAC_PI_4;
 
 /// Left, top, width and height of the plotting area \[page units\].
@@ -55,7 +56,7 @@ impl Chart {
         let mut page = Page::new(&self.title, "");
         panel.decade_grid(&mut page);
         if let Some((value, name)) = &self.limit {
-            let [x, top] = panel.point([log_within(*value, panel.u), panel.v[1]]);
+            let [x, top] = panel.point([log_within(*value, panel.u), panel.v.high]);
             page.line([x, top], [x, top + PLACE[3]], LIMIT);
             page.text([x - 4.0, top + 12.0], name, SMALL.end());
         }
@@ -102,18 +103,19 @@ fn mark(at: [f64; 2], k: usize, radius: f64) -> Vec<[f64; 2]> {
 }
 
 /// Returns the whole decades around all positive values, as logarithms; at least one decade.
-fn decades(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let [low, high] = extremes(values.filter(|value| *value > 0.0).map(f64::log10));
-    if low > high {
-        return [0.0, 1.0];
+fn decades(values: impl Iterator<Item = f64>) -> Interval {
+    let all = extremes(values.filter(|value| *value > 0.0).map(f64::log10));
+    if all.is_empty() {
+        return Interval::new(0.0, 1.0);
     }
-    [low.floor(), high.ceil().max(low.floor() + 1.0)]
+    let low = all.low.floor();
+    Interval::new(low, all.high.ceil().max(low + 1.0))
 }
 
 /// Returns the logarithm of a value, limited to the range of its axis; a value without logarithm gives the
 /// lower end.
-fn log_within(value: f64, [low, high]: [f64; 2]) -> f64 {
-    if value > 0.0 { value.log10().clamp(low, high) } else { low }
+fn log_within(value: f64, axis: Interval) -> f64 {
+    if value > 0.0 { axis.nearest(value.log10()) } else { axis.low }
 }
 
 #[cfg(test)]
@@ -123,7 +125,7 @@ mod tests {
     #[test]
     fn every_value_has_its_place_and_zero_the_lowest() {
         let axis = decades([1e-3, 50.0, 0.0].into_iter());
-        assert_eq!((axis, decades([1.0].into_iter())), ([-3.0, 2.0], [0.0, 1.0]));
+        assert_eq!([axis, decades([1.0].into_iter())], [Interval::new(-3.0, 2.0), Interval::new(0.0, 1.0)]);
         assert!((log_within(0.1, axis) + 1.0).abs() < 1e-15);
         assert_eq!([0.0, -1.0, f64::INFINITY].map(|value| log_within(value, axis)), [-3.0, -3.0, 2.0]);
     }

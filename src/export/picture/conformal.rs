@@ -6,13 +6,14 @@ use super::contour::Nodes;
 use super::map::Map;
 use super::page::{GREY, INSIDE, Page, Pen, RED, SMALL, polygon};
 use super::panel::{Panel, airy, extremes, number, range, round_below, significant};
+use crate::numerics::interval::Interval;
 
 const NORMAL: Pen = Pen::new(GREY, 0.6);
 /// A normal along which the gap goes on beyond what is shown.
 const BEYOND: Pen = NORMAL.dashed([2.0, 3.0]);
 
 /// Length of the normals beside the whole profiles as a share of the rail's length over the window, and its bounds \[page units\].
-const LENGTH: (f64, [f64; 2]) = (0.5, [18.0, 40.0]);
+const LENGTH: (f64, Interval) = (0.5, Interval::new(18.0, 40.0));
 /// Least distance of normals on the rail \[page units\] beside the whole profiles, and in the panel of their own.
 const APART: [f64; 2] = [6.0, 9.0];
 
@@ -95,8 +96,7 @@ impl ConformalPicture<'_> {
 
     /// Returns the length \[mm\] of the rail over the window.
     fn length(&self) -> f64 {
-        let [from, to] = range(self.normals.iter().map(|normal| normal.sigma));
-        to - from
+        range(self.normals.iter().map(|normal| normal.sigma)).width()
     }
 
     /// Returns normals in equal steps with those at both ends, at least so far apart on the rail \[page units\].
@@ -112,8 +112,8 @@ impl ConformalPicture<'_> {
         page.heading(room, "Profiles and the rail's normals, true scale");
         self.contact.profiles(page, room, |page, panel, _| {
             let scale = panel.scale()[0];
-            let (share, [least, most]) = LENGTH;
-            let length = (share * self.length() * scale).clamp(least, most) / scale;
+            let (share, bounds) = LENGTH;
+            let length = bounds.nearest(share * self.length() * scale) / scale;
             let feet = self.normals.iter().map(|normal| panel.point(normal.foot));
             let ends = self.normals.iter().rev().map(|normal| panel.point(normal.point(length)));
             page.area(&[feet.chain(ends).collect()], WINDOW);
@@ -251,7 +251,7 @@ struct Fan {
 impl Fan {
     /// Chooses the factor by the largest gap that matters, or the deepest overlap if that is more.
     fn new(picture: &ConformalPicture<'_>) -> Self {
-        let [low, high] = extremes(picture.normals.iter().map(|normal| normal.gap));
+        let [low, high] = extremes(picture.normals.iter().map(|normal| normal.gap)).ends();
         let approach = picture.approach();
         let high = if approach > 0.0 { high.min(SHOWN_GAP * approach) } else { high };
         let (most, longest) = (high.max(approach).max(-low), LONGEST * picture.length());

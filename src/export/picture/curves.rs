@@ -2,6 +2,7 @@
 
 use super::page::{BLUE, Colour, Page, Pen, RED, SMALL, polygon};
 use super::panel::{Panel, airy, range};
+use crate::numerics::interval::Interval;
 
 /// Width of most letters, as a share of their size.
 const LETTER: f64 = 0.6;
@@ -58,7 +59,7 @@ pub struct CurvesPanel {
     /// The curves, at most two.
     pub curves: Vec<PlottedCurve>,
     /// Smallest and largest value that is shown; what is beyond is cut off at the panel's edge. `None` shows all.
-    pub shown: Option<[f64; 2]>,
+    pub shown: Option<Interval>,
 }
 
 impl CurvesPanel {
@@ -138,12 +139,12 @@ impl CurvesPicture {
         page.finish(height, &super::page::foot())
     }
 
-    fn panel(&self, page: &mut Page, place: [f64; 4], u: [f64; 2], quantity: &CurvesPanel) {
+    fn panel(&self, page: &mut Page, place: [f64; 4], u: Interval, quantity: &CurvesPanel) {
         page.heading(place, &quantity.heading());
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
-        let [low, high] = quantity.shown.unwrap_or_else(|| range(values));
-        let least = (1e-6 * low.abs().max(high.abs())).max(1e-9);
-        let panel = Panel { place, u, v: airy([low, high], 0.06, least) };
+        let shown = quantity.shown.unwrap_or_else(|| range(values));
+        let least = (1e-6 * shown.size()).max(1e-9);
+        let panel = Panel { place, u, v: airy(shown, 0.06, least) };
         panel.zero_line(page);
         // The names end where the panel does, 12 apart.
         let letters = quantity.curves.iter().map(|curve| curve.name.chars().count()).max().unwrap_or(0);
@@ -169,7 +170,7 @@ impl CurvesMap {
         let (across, up) = (borders(&self.u), borders(&self.v));
         let ends = |borders: &[f64]| range(borders.iter().copied());
         let panel = Panel { place, u: ends(&across), v: ends(&up) };
-        let [low, high] = range(self.values.iter().flatten().copied());
+        let [low, high] = range(self.values.iter().flatten().copied()).ends();
         for (i, column) in self.values.iter().enumerate() {
             for (k, value) in column.iter().enumerate().filter(|(_, value)| value.is_finite()) {
                 let corners =
@@ -232,7 +233,7 @@ impl JoinedPair {
         page.lines(&panel.curve(&self.wheel), WHEEL);
         let foot = room[1] + room[3] + 24.0;
         if let Some(gauge) = self.gauge {
-            page.lines(&panel.curve(&[[gauge, panel.v[0]], [gauge, panel.v[1]]]), GAUGE);
+            page.lines(&panel.curve(&panel.v.ends().map(|v| [gauge, v])), GAUGE);
             page.legend([room[0] + 160.0, foot], GAUGE, "gauge line");
         }
         page.legend([room[0], foot], RAIL, "rail");
@@ -273,7 +274,7 @@ pub fn jumps(abscissae: &[&[f64]]) -> Vec<usize> {
 }
 
 fn jumps_of(values: &[f64]) -> Vec<usize> {
-    let [low, high] = range(values.iter().copied());
+    let all = range(values.iter().copied());
     let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let middle = |k: usize| {
         let last = (k + BESIDE + 1).min(changes.len());
@@ -282,7 +283,7 @@ fn jumps_of(values: &[f64]) -> Vec<usize> {
         around.sort_by(f64::total_cmp);
         around.get(around.len() / 2).copied().unwrap_or(0.0)
     };
-    let jump = |&k: &usize| changes[k] > JUMP_SHARE * (high - low) && changes[k] > JUMP * middle(k);
+    let jump = |&k: &usize| changes[k] > JUMP_SHARE * all.width() && changes[k] > JUMP * middle(k);
     (0..changes.len()).filter(jump).collect()
 }
 

@@ -37,7 +37,7 @@ pub(super) struct Level {
 /// Returns round levels. They go up to the largest value, or up to [`SHOWN`] times the approach if that is lower and above
 /// the least value.
 pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
-    let [low, high] = extremes(nodes.values.iter().copied());
+    let [low, high] = extremes(nodes.values.iter().copied()).ends();
     let shown = SHOWN * approach;
     let high = if approach > 0.0 && shown > low { high.min(shown) } else { high };
     if low >= high {

@@ -78,8 +78,8 @@ impl Map<'_> {
         let edges = self.cells.map(|values| range(values.iter().copied()));
         let along = |a: &[f64; 2], b: &[f64; 2]| {
             (0..2).any(|k| {
-                let near = ON_EDGE * (edges[k][1] - edges[k][0]);
-                edges[k].iter().any(|edge| (a[k] - edge).abs() < near && (b[k] - edge).abs() < near)
+                let near = ON_EDGE * edges[k].width();
+                edges[k].ends().iter().any(|edge| (a[k] - edge).abs() < near && (b[k] - edge).abs() < near)
             })
         };
         let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
@@ -137,8 +137,8 @@ impl Map<'_> {
             return;
         }
         let between = |pair: &[f64]| f64::midpoint(pair[0], pair[1]);
-        let columns = along.windows(2).map(|pair| panel.point([between(pair), panel.v[0]])[0]);
-        let rows = eta.windows(2).map(|pair| panel.point([panel.u[0], between(pair)])[1]);
+        let columns = along.windows(2).map(|pair| panel.point([between(pair), panel.v.low])[0]);
+        let rows = eta.windows(2).map(|pair| panel.point([panel.u.low, between(pair)])[1]);
         let borders = columns.map(|px| vec![[px, y], [px, y + h]]);
         let borders: Vec<_> = borders.chain(rows.map(|py| vec![[x, py], [x + w, py]])).collect();
         page.lines(&borders, CELL);
@@ -150,6 +150,6 @@ fn even_step(values: &[f64]) -> Option<f64> {
     if values.len() < 2 {
         return None;
     }
-    let [low, high] = extremes(values.windows(2).map(|pair| pair[1] - pair[0]));
-    (low > 0.0 && high - low <= 1e-4 * high).then_some(low)
+    let steps = extremes(values.windows(2).map(|pair| pair[1] - pair[0]));
+    (steps.low > 0.0 && steps.width() <= 1e-4 * steps.high).then_some(steps.low)
 }

@@ -47,7 +47,7 @@ impl OverlayPicture<'_> {
         let all = || self.nominal.iter().chain(self.measured).chain(arrows.iter().flatten());
         let (u, v) = (range(all().map(|p| p[0])), range(all().map(|p| p[1])));
         let (u, v) = (airy(u, 0.02, 0.0), airy(v, 0.06, 0.0));
-        let height = (WIDTH * (v[1] - v[0]) / (u[1] - u[0])).clamp(160.0, 560.0);
+        let height = (WIDTH * v.width() / u.width()).clamp(160.0, 560.0);
         let mut page = Page::new(self.title, self.about);
         let top = 112.0;
         let panel = Panel::true_scale([LEFT, top, WIDTH, height], u, v);

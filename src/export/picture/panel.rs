@@ -1,6 +1,7 @@
 //! Draws a panel: a rectangle of the page with its own coordinates, ticks and scale bar.
 
 use super::page::{BODY, GREY, INK, Page, Pen, SMALL};
+use crate::numerics::interval::Interval;
 
 const FRAME: Pen = Pen::new(GREY, 0.8);
 const ZERO: Pen = Pen::new(GREY, 0.6);
@@ -24,16 +25,16 @@ pub(super) struct Panel {
     /// Left, top, width, height \[page units\].
     pub(super) place: [f64; 4],
     /// Smallest and largest u shown.
-    pub(super) u: [f64; 2],
+    pub(super) u: Interval,
     /// Smallest and largest v shown.
-    pub(super) v: [f64; 2],
+    pub(super) v: Interval,
 }
 
 impl Panel {
     /// Makes the largest panel inside `room` that shows u and v at one scale, centred.
-    pub(super) fn true_scale(room: [f64; 4], u: [f64; 2], v: [f64; 2]) -> Self {
-        let scale = (room[2] / (u[1] - u[0])).min(room[3] / (v[1] - v[0]));
-        let size = [scale * (u[1] - u[0]), scale * (v[1] - v[0])];
+    pub(super) fn true_scale(room: [f64; 4], u: Interval, v: Interval) -> Self {
+        let scale = (room[2] / u.width()).min(room[3] / v.width());
+        let size = [scale * u.width(), scale * v.width()];
         let place =
             [room[0] + (room[2] - size[0]) / 2.0, room[1] + (room[3] - size[1]) / 2.0, size[0], size[1]];
         Self { place, u, v }
@@ -41,12 +42,12 @@ impl Panel {
 
     /// Returns the page units per unit of u and v.
     pub(super) fn scale(&self) -> [f64; 2] {
-        [self.place[2] / (self.u[1] - self.u[0]), self.place[3] / (self.v[1] - self.v[0])]
+        [self.place[2] / self.u.width(), self.place[3] / self.v.width()]
     }
 
     pub(super) fn point(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [a, b] = self.scale();
-        [self.place[0] + a * (u - self.u[0]), self.place[1] + b * (self.v[1] - v)]
+        [self.place[0] + a * (u - self.u.low), self.place[1] + b * (self.v.high - v)]
     }
 
     /// Returns polylines on the page, cut off at the panel's edges and where a point is undefined.
@@ -65,17 +66,16 @@ impl Panel {
 
     /// Returns the part of a segment inside the panel (Liang and Barsky).
     fn clip(&self, a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-        let (mut from, mut to) = (0.0f64, 1.0f64);
+        let mut shares = Interval::new(0.0, 1.0);
         for (k, range) in [self.u, self.v].into_iter().enumerate() {
             let d = b[k] - a[k];
-            let mut ends = [(range[0] - a[k]) / d, (range[1] - a[k]) / d];
-            if d == 0.0 {
-                let inside = range[0] <= a[k] && a[k] <= range[1];
-                ends = if inside { [0.0, 1.0] } else { [2.0, 2.0] };
+            if d != 0.0 {
+                shares = shares.cut(Interval::around(range.map(|end| (end - a[k]) / d).ends()));
+            } else if !range.contains(a[k]) {
+                return None;
             }
-            from = from.max(ends[0].min(ends[1]));
-            to = to.min(ends[0].max(ends[1]));
         }
+        let Interval { low: from, high: to } = shares;
         let at = |t: f64| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
         // Ends inside the panel keep their bits, so that neighbouring pieces meet exactly.
         let ends = [if from == 0.0 { a } else { at(from) }, if to == 1.0 { b } else { at(to) }];
@@ -85,13 +85,13 @@ impl Panel {
 
     /// Draws a line at v = 0, if the panel shows it.
     pub(super) fn zero_line(&self, page: &mut Page) {
-        page.lines(&self.curve(&[[self.u[0], 0.0], [self.u[1], 0.0]]), ZERO);
+        page.lines(&self.curve(&self.u.ends().map(|u| [u, 0.0])), ZERO);
     }
 
     /// Draws the frame, ticks, numbers and names below and to the left.
     pub(super) fn axes(&self, page: &mut Page, names: [&str; 2]) {
         let [_, _, w, h] = self.place;
-        let powers = [self.u, self.v].map(|range| power_for(range[0].abs().max(range[1].abs())));
+        let powers = [self.u, self.v].map(|range| power_for(range.size()));
         let ticks = [ticks_of(self.u, w / 45.0, powers[0]), ticks_of(self.v, h / 28.0, powers[1])];
         let [u, v] = [0, 1].map(|k| in_power(names[k], powers[k]));
         self.ticked(page, [&u, &v], ticks);
@@ -104,8 +104,8 @@ impl Panel {
 
     /// Draws lines across the panel at its decades.
     pub(super) fn decade_grid(&self, page: &mut Page) {
-        let across = decades(self.u).into_iter().map(|(u, _)| [[u, self.v[0]], [u, self.v[1]]]);
-        let along = decades(self.v).into_iter().map(|(v, _)| [[self.u[0], v], [self.u[1], v]]);
+        let across = decades(self.u).into_iter().map(|(u, _)| self.v.ends().map(|v| [u, v]));
+        let along = decades(self.v).into_iter().map(|(v, _)| self.u.ends().map(|u| [u, v]));
         let lines: Vec<_> =
             across.chain(along).map(|ends| ends.map(|end| self.point(end)).to_vec()).collect();
         page.lines(&lines, GRID);
@@ -116,14 +116,14 @@ impl Panel {
         page.lines(&[vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]]], FRAME);
         let mut ticks = Vec::new();
         let below: Ticks =
-            below.into_iter().map(|(value, label)| (self.point([value, self.v[0]])[0], label)).collect();
+            below.into_iter().map(|(value, label)| (self.point([value, self.v.low])[0], label)).collect();
         ticks.extend(below.iter().map(|(px, _)| vec![[*px, y + h], [*px, y + h + 5.0]]));
         for (px, label) in labelled(&below) {
             page.text([*px, y + h + 18.0], label, SMALL.middle());
         }
         let widest = left.iter().map(|(_, label)| width(label)).fold(0.0, f64::max);
         for (value, label) in left {
-            let [_, py] = self.point([self.u[0], value]);
+            let [_, py] = self.point([self.u.low, value]);
             ticks.push(vec![[x, py], [x - 5.0, py]]);
             page.text([x - 8.0, py + 4.0], label, SMALL.end());
         }
@@ -137,7 +137,7 @@ impl Panel {
     pub(super) fn above(&self, page: &mut Page, name: &str, value: impl Fn(f64) -> String) {
         let [x, y, w, _] = self.place;
         let ticks = ticks_of(self.u, w / 45.0, 0).into_iter();
-        let ticks: Ticks = ticks.map(|(u, _)| (self.point([u, self.v[1]])[0], value(u))).collect();
+        let ticks: Ticks = ticks.map(|(u, _)| (self.point([u, self.v.high])[0], value(u))).collect();
         let marks: Vec<_> = ticks.iter().map(|(px, _)| vec![[*px, y], [*px, y - 5.0]]).collect();
         page.lines(&marks, FRAME);
         for (px, value) in labelled(&ticks) {
@@ -165,25 +165,24 @@ impl Panel {
 
 /// Returns the smallest range that holds all finite values, widened to a length if they are equal; 0 to 1 if
 /// there are none.
-pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    match extremes(values) {
-        [low, high] if high > low => [low, high],
-        [low, _] if low.is_finite() => [low - 0.5, low + 0.5],
-        _ => [0.0, 1.0],
+pub(super) fn range(values: impl Iterator<Item = f64>) -> Interval {
+    let all = extremes(values);
+    match all.low {
+        low if all.high > low => all,
+        low if low.is_finite() => Interval::of(low).grown(0.5),
+        _ => Interval::new(0.0, 1.0),
     }
 }
 
 /// Returns the smallest and the largest finite value; +∞ and −∞ if there are none.
-pub(super) fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let finite = values.filter(|value| value.is_finite());
-    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+pub(super) fn extremes(values: impl Iterator<Item = f64>) -> Interval {
+    Interval::around(values.filter(|value| value.is_finite()))
 }
 
 /// Returns a range with free space at both ends: `share` of its length, or `least` if that is more. A constant with
 /// rounding errors then appears as a line.
-pub(super) fn airy([low, high]: [f64; 2], share: f64, least: f64) -> [f64; 2] {
-    let air = (share * (high - low)).max(least);
-    [low - air, high + air]
+pub(super) fn airy(range: Interval, share: f64, least: f64) -> Interval {
+    range.grown((share * range.width()).max(least))
 }
 
 /// Returns the largest of …, 1, 2, 5, 10, … that is not above x > 0.
@@ -233,9 +232,9 @@ pub(super) fn in_power(name: &str, power: i32) -> String {
 
 /// Returns round values inside a range with their labels, in a power of ten. There are about `most` of them, and at least two, because one
 /// tick gives no scale.
-fn ticks_of(range: [f64; 2], most: f64, power: i32) -> Ticks {
+fn ticks_of(range: Interval, most: f64, power: i32) -> Ticks {
     // Rounding down takes off up to a factor of 2.5.
-    let mut step = round_below(2.5 * (range[1] - range[0]) / most);
+    let mut step = round_below(2.5 * range.width() / most);
     let mut values = multiples(range, step);
     // Half the range contains two multiples, which is at most three or four steps down the ladder 1, 2, 5.
     for _ in 0..LADDER {
@@ -274,16 +273,16 @@ fn width(label: &str) -> f64 {
     SMALL.size * label.chars().map(letter).sum::<f64>()
 }
 
-fn multiples([low, high]: [f64; 2], step: f64) -> Vec<f64> {
-    let first = (low / step).ceil();
-    let count = (high / step).floor() - first;
+fn multiples(range: Interval, step: f64) -> Vec<f64> {
+    let first = (range.low / step).ceil();
+    let count = (range.high / step).floor() - first;
     let all = (0..=count.max(-1.0) as usize).map(|k| (first + k as f64) * step);
-    all.filter(|value| (low..=high).contains(value)).collect()
+    all.filter(|value| range.contains(*value)).collect()
 }
 
 /// Returns powers of ten as labels along a range of logarithms between whole numbers, at most about ten.
-fn decades([low, high]: [f64; 2]) -> Ticks {
-    let (low, high) = (low.round() as i32, high.round() as i32);
+fn decades(range: Interval) -> Ticks {
+    let (low, high) = (range.low.round() as i32, range.high.round() as i32);
     let step = ((high - low) / 10 + 1) as usize;
     (low..=high).step_by(step).map(|power| (f64::from(power), power_of_ten(power))).collect()
 }
@@ -325,13 +324,13 @@ mod tests {
     fn narrow_axes_have_two_ticks_at_least() {
         for range in [[-1.5, 1.5], [-0.9, 1.9], [0.21, 0.29], [-7.0, 90.0]] {
             for most in [0.2, 1.2, 7.0] {
-                let ticks = ticks_of(range, most, 0);
+                let ticks = ticks_of(range.into(), most, 0);
                 assert!(ticks.len() >= 2, "{range:?} {most}: {ticks:?}");
             }
         }
-        assert_eq!(ticks_of([-1.5, 1.5], 1.2, 0).len(), 3);
+        assert_eq!(ticks_of(Interval::new(-1.5, 1.5), 1.2, 0).len(), 3);
         let labels: Vec<String> =
-            ticks_of([0.0, 3.1e-9], 6.0, -9).into_iter().map(|(_, label)| label).collect();
+            ticks_of(Interval::new(0.0, 3.1e-9), 6.0, -9).into_iter().map(|(_, label)| label).collect();
         assert_eq!(labels, ["0", "1", "2", "3"]);
         assert_eq!([2e-9, 7e-4, 0.2, 0.0, 3e7].map(power_for), [-9, -6, 0, 0, 6]);
         assert_eq!(in_power("s [mm]", -9), "s [10⁻⁹ mm]");
@@ -354,15 +353,18 @@ mod tests {
 
     #[test]
     fn decades_are_labelled_as_powers() {
-        let labels = |range| decades(range).into_iter().map(|(_, label)| label).collect::<Vec<_>>();
-        assert_eq!(labels([-1.0, 1.0]), ["10⁻¹", "10⁰", "10¹"]);
-        assert_eq!(labels([-24.0, 0.0]).first().map(String::as_str), Some("10⁻²⁴"));
-        assert!(labels([-24.0, 0.0]).len() <= 11);
+        let labels = |low, high| -> Vec<String> {
+            decades(Interval::new(low, high)).into_iter().map(|(_, label)| label).collect()
+        };
+        assert_eq!(labels(-1.0, 1.0), ["10⁻¹", "10⁰", "10¹"]);
+        assert_eq!(labels(-24.0, 0.0).first().map(String::as_str), Some("10⁻²⁴"));
+        assert!(labels(-24.0, 0.0).len() <= 11);
     }
 
     #[test]
     fn curves_end_at_the_edge_and_at_undefined_points() {
-        let panel = Panel { place: [0.0, 0.0, 10.0, 10.0], u: [0.0, 1.0], v: [0.0, 1.0] };
+        let unit = Interval::new(0.0, 1.0);
+        let panel = Panel { place: [0.0, 0.0, 10.0, 10.0], u: unit, v: unit };
         let line = [[-1.0, 0.5], [0.5, 0.5], [0.6, 0.5], [f64::NAN, 0.5], [0.7, 0.5], [0.7, 3.0]];
         let pieces = panel.curve(&line);
         assert_eq!(pieces, [vec![[0.0, 5.0], [5.0, 5.0], [6.0, 5.0]], vec![[7.0, 5.0], [7.0, 0.0]]]);

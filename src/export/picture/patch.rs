@@ -42,8 +42,8 @@ impl PatchPicture<'_> {
     fn profiles(&self, page: &mut Page, room: [f64; 4]) {
         page.heading(room, "Profiles in the contact frame, true scale");
         self.contact.profiles(page, room, |page, panel, room| {
-            let [from, to] = range(self.cells[0].iter().copied()).map(|xi| xi.clamp(panel.u[0], panel.u[1]));
-            let half = (to - from) / 2.0;
+            let shown = range(self.cells[0].iter().copied()).map(|xi| panel.u.nearest(xi));
+            let ([from, to], half) = (shown.ends(), shown.width() / 2.0);
             let corners =
                 [[from, -half], [to, -half], [to, half], [from, half]].map(|corner| panel.point(corner));
             let window = corners.map(|[x, y]| [x, y.clamp(room[1], room[1] + room[3])]);
@@ -54,20 +54,20 @@ impl PatchPicture<'_> {
     /// Draws the gap in the midplane over a straightened rail, with the heights stretched.
     fn gap(&self, page: &mut Page, room: [f64; 4]) {
         let approach = self.contact.header.approach;
-        let [low, high] = range(self.midplane.iter().map(|p| p[1]).chain([0.0, approach]));
-        let high = if approach > 0.0 { high.min(SHOWN_GAP * approach) } else { high };
+        let mut v = range(self.midplane.iter().map(|p| p[1]).chain([0.0, approach]));
+        v.high = if approach > 0.0 { v.high.min(SHOWN_GAP * approach) } else { v.high };
         let u = range(self.cells[0].iter().copied());
-        let panel = Panel { place: room, u, v: airy([low, high], 0.08, 0.0) };
+        let panel = Panel { place: room, u, v: airy(v, 0.08, 0.0) };
         let [a, b] = panel.scale();
         page.heading(room, &format!("Gap at η = 0 over the rail, heights × {}", significant(b / a, 2)));
         let closing =
             |&[xi, s]: &[f64; 2]| Closing { wheel: [xi, s], closed: [xi, approach], overlap: approach - s };
         page.area(&overlaps(&panel, &self.midplane.iter().map(closing).collect::<Vec<_>>()), INSIDE);
-        page.lines(&panel.curve(&[[u[0], 0.0], [u[1], 0.0]]), RAIL);
+        page.lines(&panel.curve(&u.ends().map(|u| [u, 0.0])), RAIL);
         page.lines(&panel.curve(self.midplane), WHEEL);
         panel.axes(page, ["ξ [mm]", "s [mm]"]);
         if approach > 0.0 {
-            page.lines(&panel.curve(&[[u[0], approach], [u[1], approach]]), APPROACH);
+            page.lines(&panel.curve(&u.ends().map(|u| [u, approach])), APPROACH);
             page.legend([room[0], room[1] + room[3] + 52.0], APPROACH, "approach δ");
         }
     }

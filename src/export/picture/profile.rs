@@ -3,6 +3,7 @@
 use super::page::SEPARATOR;
 use super::page::{BLUE, Page, Pen, RED, SMALL};
 use super::panel::{Panel, airy, number, range};
+use crate::numerics::interval::Interval;
 
 const CURVE: Pen = Pen::new(BLUE, 1.4);
 const POINT: Pen = Pen::new(RED, 1.0);
@@ -53,7 +54,7 @@ impl ProfilePicture<'_> {
         let both = || self.curve.iter().chain(self.points);
         let (u, v) = (range(both().map(|p| p[0])), range(both().map(|p| p[1])));
         let (u, v) = (airy(u, 0.02, 0.0), airy(v, 0.06, 0.0));
-        let height = (WIDTH * (v[1] - v[0]) / (u[1] - u[0])).clamp(120.0, 420.0);
+        let height = (WIDTH * v.width() / u.width()).clamp(120.0, 420.0);
         let room = [LEFT, top, WIDTH, height];
         page.heading(room, "Profile, true scale");
         let panel = Panel::true_scale(room, u, v);
@@ -72,7 +73,7 @@ impl ProfilePicture<'_> {
     }
 
     /// Draws the distance of the points from the curve in µm. Returns the top of the next panel.
-    fn residuals(&self, page: &mut Page, top: f64, u: [f64; 2]) -> f64 {
+    fn residuals(&self, page: &mut Page, top: f64, u: Interval) -> f64 {
         let micrometres: Vec<[f64; 2]> = self.residual.iter().map(|[s, r]| [*s, 1e3 * r]).collect();
         let v = about_zero(range(micrometres.iter().map(|p| p[1])));
         let panel = Panel { place: [LEFT, top, WIDTH, 170.0], u, v };
@@ -84,19 +85,19 @@ impl ProfilePicture<'_> {
     }
 
     /// Draws the curvature in 1/m, with the radii of its extremes in words. Returns the top of the next panel.
-    fn curvatures(&self, page: &mut Page, top: f64, u: [f64; 2]) -> f64 {
+    fn curvatures(&self, page: &mut Page, top: f64, u: Interval) -> f64 {
         let per_metre: Vec<[f64; 2]> = self.curvature.iter().map(|[s, k]| [*s, 1e3 * k]).collect();
-        let [least, most] = range(per_metre.iter().map(|p| p[1]));
-        let panel = Panel { place: [LEFT, top, WIDTH, 200.0], u, v: about_zero([least, most]) };
+        let all = range(per_metre.iter().map(|p| p[1]));
+        let panel = Panel { place: [LEFT, top, WIDTH, 200.0], u, v: about_zero(all) };
         let radius = |k: f64, side: &str| {
             format!("{SEPARATOR}smallest {side} radius {} mm", number((1e3 / k).abs(), 0.1))
         };
         let mut title = String::from("Curvature, positive where hollow side up");
-        if least < 0.0 {
-            title += &radius(least, "convex-up");
+        if all.low < 0.0 {
+            title += &radius(all.low, "convex-up");
         }
-        if most > 0.0 {
-            title += &radius(most, "hollow-up");
+        if all.high > 0.0 {
+            title += &radius(all.high, "hollow-up");
         }
         page.heading(panel.place, &title);
         panel.zero_line(page);
@@ -107,8 +108,8 @@ impl ProfilePicture<'_> {
 }
 
 /// Returns a range that contains 0, with 5 % of free space. Values in µm and 1/m have no digits beyond the sixth.
-fn about_zero([low, high]: [f64; 2]) -> [f64; 2] {
-    airy([low.min(0.0), high.max(0.0)], 0.05, 1e-6)
+fn about_zero(range: Interval) -> Interval {
+    airy(range.with(0.0), 0.05, 1e-6)
 }
 
 /// Returns the arms of a cross.

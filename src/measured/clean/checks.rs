@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::loops;
 use crate::error::{Error, Result};
 use crate::measured::read::points::Point;
-use crate::measured::shape::{gauge_depth, has_flange_back, width};
+use crate::measured::shape::{gauge_depth, has_flange_back, reach};
 use crate::measured::unit::Unit;
 use crate::profile::Side;
 
@@ -102,8 +102,7 @@ impl Finding {
 /// Returns the error of points whose width in a unit \[mm\] means that the unit is wrong, and the length \[mm\] of the unit that is
 /// likeliest meant; `stated` tells whether the file or an option names the unit. `None` for a possible width.
 pub(in crate::measured) fn wrong_unit(points: &[Point], unit: f64, stated: bool) -> Option<(Error, f64)> {
-    let [low, high] = width(points);
-    let wide = high - low;
+    let wide = reach(points).width();
     if WIDTHS.contains(&wide) && (stated || wide >= PLAIN_WIDTH) {
         return None;
     }

@@ -1,6 +1,7 @@
 //! Finds where a chain of points crosses itself, by a tree of boxes. Cost: n log n for chains like profiles.
 
 use crate::measured::read::points::Point;
+use crate::numerics::interval::Interval;
 
 /// Most crossings that are reported.
 const MOST_CROSSINGS: usize = 100;
@@ -32,11 +33,8 @@ fn crossings_within(points: &[Point], most_comparisons: usize) -> Crossings {
     Crossings { edges: search.found, cut_short: search.comparisons > most_comparisons }
 }
 
-#[derive(Debug, Clone, Copy)]
-struct EdgeBox {
-    low: [f64; 2],
-    high: [f64; 2],
-}
+/// The box around some edges: the ranges of x and of z \[mm\].
+type EdgeBox = [Interval; 2];
 
 /// The edges `from`..`to` and the index of their box. The children of box k are the boxes 2k and 2k + 1.
 #[derive(Debug, Clone, Copy)]
@@ -65,8 +63,7 @@ struct CrossingSearch<'a> {
 
 impl<'a> CrossingSearch<'a> {
     fn new(points: &'a [Point], most_comparisons: usize) -> Self {
-        let empty = EdgeBox { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
-        let boxes = vec![empty; 4 * points.len()];
+        let boxes = vec![[Interval::NONE; 2]; 4 * points.len()];
         let mut search = Self { points, boxes, found: Vec::new(), comparisons: 0, most_comparisons };
         search.build(EdgeRange { index: 1, from: 0, to: points.len() - 1 });
         search
@@ -76,14 +73,11 @@ impl<'a> CrossingSearch<'a> {
         let bounds = match node.halves() {
             Some([a, b]) => {
                 let (a, b) = (self.build(a), self.build(b));
-                EdgeBox {
-                    low: [a.low[0].min(b.low[0]), a.low[1].min(b.low[1])],
-                    high: [a.high[0].max(b.high[0]), a.high[1].max(b.high[1])],
-                }
+                [a[0].hull(b[0]), a[1].hull(b[1])]
             }
             None => {
                 let (a, b) = (self.points[node.from], self.points[node.from + 1]);
-                EdgeBox { low: [a.x.min(b.x), a.z.min(b.z)], high: [a.x.max(b.x), a.z.max(b.z)] }
+                [Interval::of(a.x).with(b.x), Interval::of(a.z).with(b.z)]
             }
         };
         self.boxes[node.index] = bounds;
@@ -129,7 +123,7 @@ fn turn(a: Point, b: Point, c: Point) -> f64 {
 }
 
 fn apart(a: &EdgeBox, b: &EdgeBox) -> bool {
-    (0..2).any(|k| a.high[k] < b.low[k] || b.high[k] < a.low[k])
+    !(a[0].meets(b[0]) && a[1].meets(b[1]))
 }
 
 #[cfg(test)]

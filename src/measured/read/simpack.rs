@@ -22,6 +22,7 @@ use super::scan::{Line, last_place, lines};
 use crate::error::{Error, Result};
 use crate::measured::Format;
 use crate::measured::unit::Unit;
+use crate::numerics::interval::Interval;
 use crate::profile::Side;
 
 /// Keys of the spline that are read, each at most once. All but the first one have an effect.
@@ -202,21 +203,18 @@ impl<'a> Keys<'a> {
         self.note_dropped(points, before, "point.dist.min");
         let shift = [self.number("shift.y", 0.0)?, self.number("shift.z", 0.0)?];
         let (sin, cos) = self.angle()?.sin_cos();
-        let bounds = |axis: &str| -> Result<[f64; 2]> {
-            let bounds = [
-                self.number(&format!("bound.{axis}.min"), 1.0)?,
-                self.number(&format!("bound.{axis}.max"), 0.0)?,
-            ];
-            Ok(if bounds[0] < bounds[1] { bounds } else { [f64::NEG_INFINITY, f64::INFINITY] })
+        let bounds = |axis: &str| -> Result<Interval> {
+            let low = self.number(&format!("bound.{axis}.min"), 1.0)?;
+            let high = self.number(&format!("bound.{axis}.max"), 0.0)?;
+            Ok(if low < high { Interval::new(low, high) } else { Interval::ALL })
         };
         let (y_bounds, z_bounds) = (bounds("y")?, bounds("z")?);
         for point in &mut points.at {
             let (y, z) = (point.x + shift[0], point.z + shift[1]);
             (point.x, point.z) = (y * cos - z * sin, y * sin + z * cos);
         }
-        let inside = |v: f64, [low, high]: [f64; 2]| low <= v && v <= high;
         let before = points.at.len();
-        points.at.retain(|point| inside(point.x, y_bounds) && inside(point.z, z_bounds));
+        points.at.retain(|point| y_bounds.contains(point.x) && z_bounds.contains(point.z));
         self.note_dropped(points, before, "bound.");
         self.turn_and_scale(points)
     }

@@ -4,12 +4,12 @@ use crate::programs::{folder, output_of};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use wheelrail::Window;
 use wheelrail::case::{AskedPressure, PartPressure};
 use wheelrail::export::array_npy;
 use wheelrail::load::{Elastic, effective_modulus};
 use wheelrail::mesh::{GridGroup, groups};
 use wheelrail::separation::Evaluator;
+use wheelrail::{Interval, Window};
 use wheelrail_report::loads::{Carried, Solved, carried};
 
 /// The page that holds the table.
@@ -65,10 +65,8 @@ fn solve(dir: &Path) -> Option<BTreeMap<usize, Solved>> {
 
 /// Gives the box \[mm\] around the edges of contact.
 fn extent(pressure: &PartPressure) -> Window {
-    let side = |axis: usize| {
-        let along = pressure.outline.iter().flatten().map(|point| point[axis]);
-        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], at| [at.min(least), at.max(most)])
-    };
+    let side =
+        |axis: usize| Interval::around(pressure.outline.iter().flatten().map(|point| point[axis])).ends();
     Window { xi: side(0), eta: side(1) }
 }
 

@@ -5,6 +5,7 @@
 
 use crate::loads::{Loaded, Solved};
 use crate::whole_case;
+use wheelrail::Interval;
 use wheelrail::case::{Site, sites};
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::error::{Error, Result};
@@ -86,10 +87,8 @@ impl ConformingPair {
     fn new(loaded: Loaded, pair: &Pair) -> Result<Self> {
         let sites = sites(&loaded.case(pair)?)?;
         let conforming = sites.into_iter().filter_map(|site| Some((patch(&site)?, site)));
-        let turn = |(patch, site): &(Patch, Site)| {
-            let turns = angles(patch, site).map(|[low, high]| high - low);
-            turns.fold(0.0, f64::max)
-        };
+        let turn =
+            |(patch, site): &(Patch, Site)| angles(patch, site).map(Interval::width).fold(0.0, f64::max);
         let (patch, site) = conforming
             .max_by(|a, b| turn(a).total_cmp(&turn(b)))
             .ok_or_else(|| Error::new(loaded.pair, "no patch", "a patch over the rail", "report this"))?;
@@ -111,9 +110,7 @@ impl ConformingPair {
 
     /// Returns the turn of the rail's normal over the patch \[rad\].
     pub fn turn(&self) -> f64 {
-        let [low, high] = angles(&self.patch, &self.site)
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |all, part| [all[0].min(part[0]), all[1].max(part[1])]);
-        high - low
+        angles(&self.patch, &self.site).fold(Interval::NONE, Interval::hull).width()
     }
 
     /// Returns the largest difference of a gap of [`GAPS`] from t over the grid's points in the patch \[mm\].
@@ -131,13 +128,8 @@ impl GapGrid {
     fn new(site: &Site, patch: &Patch) -> Self {
         let placement = &site.contact.placement;
         let (gap, mut plane) = (NormalGap::new(placement), Evaluator::new(placement));
-        let own = plane_extents(site, &gap);
-        let extents = patch
-            .components
-            .iter()
-            .fold(own, |[sigma, eta], part| [joined(sigma, part.xi), joined(eta, part.eta)]);
-        let [sigma, eta] = extents.map(|extent| {
-            let [low, high] = widened(extent, MARGIN);
+        let [sigma, eta] = joined(plane_extents(site, &gap), patch).map(|extent| {
+            let [low, high] = widened(extent, MARGIN).ends();
             equal_steps(low, high, SIDE)
         });
         let points: Vec<_> = sigma.iter().map(|&sigma| gap.rail().point(sigma)).collect();
@@ -157,34 +149,33 @@ impl GapGrid {
 /// Finds the patch over the rail of a site under its estimated approach; `None` without one.
 fn patch(site: &Site) -> Option<Patch> {
     let gap = NormalGap::new(&site.contact.placement);
-    let [sigma, eta] = plane_extents(site, &gap).map(|extent| widened(extent, SEARCHED));
+    let [sigma, eta] = plane_extents(site, &gap).map(|extent| widened(extent, SEARCHED).ends());
     let window = Window { xi: sigma, eta };
     let patch = Patch::over_rail(&site.contact.placement, site.approach(), &window);
     Some(patch).filter(|patch| !patch.components.is_empty())
 }
 
-/// Returns the least and largest α \[rad\] within each part of a patch over the rail's surface.
-fn angles(patch: &Patch, site: &Site) -> impl Iterator<Item = [f64; 2]> {
+/// Returns the range of α \[rad\] within each part of a patch over the rail's surface.
+fn angles(patch: &Patch, site: &Site) -> impl Iterator<Item = Interval> {
     let gap = NormalGap::new(&site.contact.placement);
-    patch.components.iter().map(move |part| gap.angles(part.xi))
+    patch.components.iter().map(move |part| gap.angles(part.xi).into())
 }
 
 /// Returns the ranges of σ and η of the plane's patch over the grid of a site \[mm\].
-fn plane_extents(site: &Site, gap: &NormalGap<'_>) -> [[f64; 2]; 2] {
-    let parts = site.patch().map_or_else(Vec::new, |patch| patch.components);
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let [xi, eta] =
-        parts.iter().fold([none; 2], |[xi, eta], part| [joined(xi, part.xi), joined(eta, part.eta)]);
+fn plane_extents(site: &Site, gap: &NormalGap<'_>) -> [Interval; 2] {
+    let none = [Interval::NONE; 2];
+    let [xi, eta] = site.patch().map_or(none, |patch| joined(none, &patch));
     [xi.map(|xi| gap.rail().sigma(xi)), eta]
 }
 
-fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0].min(b[0]), a[1].max(b[1])]
+/// Returns the hulls of two ranges and those of the parts of a patch.
+fn joined(ranges: [Interval; 2], patch: &Patch) -> [Interval; 2] {
+    let parts = patch.components.iter();
+    parts.fold(ranges, |[xi, eta], part| [xi.hull(part.xi.into()), eta.hull(part.eta.into())])
 }
 
-fn widened([low, high]: [f64; 2], share: f64) -> [f64; 2] {
-    let more = share * (high - low);
-    [low - more, high + more]
+fn widened(extent: Interval, share: f64) -> Interval {
+    extent.grown(share * extent.width())
 }
 
 /// Computes the ten pairs with their grids.

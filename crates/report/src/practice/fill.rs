@@ -1,5 +1,6 @@
 //! Finds the patch by a flood fill over a fine grid.
 
+use wheelrail::Interval;
 use wheelrail::patch::Window;
 use wheelrail::placement::Placement;
 use wheelrail::separation::Evaluator;
@@ -38,7 +39,7 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let over = if placement.skew() == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
         let xi = at(window.xi, k, counts[0]);
-        if over.is_some_and(|[a, b]| a <= xi && xi <= b) {
+        if over.is_some_and(|over| Interval::from(over).contains(xi)) {
             evaluator.column(xi, &eta, column);
         }
     }

@@ -1,6 +1,7 @@
 //! Turns profiles into chains of chords, and finds their outermost heights: the data of brute force. Nothing here uses the
 //! sections, searches and kernels that it checks.
 
+use wheelrail::Interval;
 use wheelrail::profile::{Profile, trace};
 
 /// Distance \[mm\] of a chain's points. Its chords are 1.3e-5 mm off a radius of 1 mm, which is that of a lip.
@@ -58,16 +59,15 @@ pub(super) struct Polyline {
 
 impl Polyline {
     pub fn new(points: Vec<[f64; 2]>, facing: Facing) -> Self {
-        let left = points.iter().map(|p| p[0]).fold(f64::INFINITY, f64::min);
-        let right = points.iter().map(|p| p[0]).fold(f64::NEG_INFINITY, f64::max);
-        let count = if left <= right { ((right - left) / BIN) as usize + 1 } else { 0 };
+        let reach = Interval::around(points.iter().map(|p| p[0]));
+        let count = if reach.is_empty() { 0 } else { (reach.width() / BIN) as usize + 1 };
         let mut bins = vec![Vec::new(); count];
         for (k, pair) in points.windows(2).enumerate() {
-            let bin = |x: f64| ((x - left) / BIN) as usize;
+            let bin = |x: f64| ((x - reach.low) / BIN) as usize;
             let [a, b] = [bin(pair[0][0].min(pair[1][0])), bin(pair[0][0].max(pair[1][0]))];
             bins[a..=b].iter_mut().for_each(|bin| bin.push(k));
         }
-        Self { points, facing, left, bins }
+        Self { points, facing, left: reach.low, bins }
     }
 
     /// Returns the outermost height at an abscissa; `None` beside the chain.
