@@ -3,6 +3,7 @@
 //!     cargo run --release --example 02_patch
 #![allow(clippy::print_stdout)]
 
+use wheelrail::Interval;
 use wheelrail::load::feasibility;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::Pair;
@@ -14,7 +15,7 @@ fn main() -> wheelrail::Result<()> {
     if let Some(feasibility) = feasibility(&placement) {
         println!("feasible: {}", feasibility.feasible);
     }
-    let window = Window { xi: [-15.0, 15.0], eta: [-15.0, 15.0] };
+    let window = Window { xi: Interval::symmetric(15.0), eta: Interval::symmetric(15.0) };
     for component in Patch::new(&placement, 0.05, &window).components {
         println!("xi from {:.4} to {:.4} mm", component.xi[0], component.xi[1]);
         println!("area {:.6} mm2, perimeter {:.6} mm", component.area, component.perimeter);

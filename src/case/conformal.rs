@@ -37,7 +37,7 @@ impl Conformal {
         let approach = site.contact.approach.filter(|_| site.has_extent());
         let patch = approach.map(|approach| Patch::over_rail(&site.contact.placement, approach, &window));
         let components = patch.iter().flat_map(|patch| &patch.components);
-        let angles = components.map(|component| gap.angles(component.xi).into()).collect();
+        let angles = components.map(|component| gap.angles(component.xi)).collect();
         let rail = sigma.iter().filter_map(|&sigma| gap.rail().point(sigma)).collect();
         Some(Self { rail, gap: values, truncation, patch, angles })
     }
@@ -86,7 +86,7 @@ pub(super) fn turning_warning(
     let placement = &site.contact.placement;
     let gap = NormalGap::new(placement);
     let turns = patch?.components.iter().filter_map(|component| {
-        let points = component.xi.map(|xi| gap.rail().point(gap.rail().sigma(xi)));
+        let points = component.xi.ends().map(|xi| gap.rail().point(gap.rail().sigma(xi)));
         let [Some(a), Some(b)] = points else { return None };
         let turn = |at: &RailPoint| at.sin.atan2(at.cos);
         let steeper = if turn(&a).abs() > turn(&b).abs() { a } else { b };

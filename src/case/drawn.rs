@@ -10,6 +10,7 @@ use crate::export::{
     Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, Pressed, QuadMesh, SEPARATOR,
 };
 use crate::mesh::{StripMesh, equal_steps};
+use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -18,7 +19,7 @@ use crate::separation::{Choice, Demand, EtaAxis, Evaluator, Method, Values};
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
 /// the grid is symmetric about it.
-pub(super) const DRAWN: usize = 121;
+const DRAWN: usize = 121;
 
 /// Tolerance on s \[mm\] of a picture without a plan: far below the width of a line.
 pub(super) const DRAWN_TOLERANCE: f64 = 1e-6;
@@ -50,8 +51,7 @@ impl Drawn {
 
     /// Computes what is drawn of a placed pair over a window.
     fn of(placement: &Placement, window: &Window, choice: &Choice, contact: String) -> Self {
-        let axis = |[from, to]: [f64; 2]| if from < to { equal_steps(from, to, DRAWN) } else { vec![from] };
-        let (xi, eta) = (axis(window.xi), EtaAxis::new(&axis(window.eta)));
+        let (xi, eta) = (places(window.xi), EtaAxis::new(&places(window.eta)));
         let mut separation = Values::new(xi.len() * eta.eta.len());
         choice.fill(placement, &xi, &eta, &mut separation);
         let mut evaluator = Evaluator::new(placement);
@@ -85,6 +85,11 @@ impl Drawn {
         let [rail, wheel] = &self.outlines;
         PicturedContact { header, name: &self.contact, refusals: &self.refusals, rail, wheel }
     }
+}
+
+/// Gives the places along an axis at which a picture's values are computed; one alone of an interval without length.
+pub(super) fn places(axis: Interval) -> Vec<f64> {
+    if axis.low < axis.high { equal_steps(axis.low, axis.high, DRAWN) } else { vec![axis.low] }
 }
 
 /// Draws the patch of a placed pair with its boundary and both profiles, as SVG. `title` and `contact` head it; `cells` are

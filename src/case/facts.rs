@@ -3,6 +3,7 @@
 use super::contact::EllipseUnder;
 use super::run::Part;
 use crate::load::Ellipse;
+use crate::numerics::interval::Interval;
 use crate::patch::Patch;
 
 /// One fact of a contact.
@@ -105,7 +106,7 @@ pub const FACTS: [Fact; 27] = [
         unit: "mm",
         ..text("patch: extent, ξ × η", |part| {
             let extent = patch(part)?.extent()?;
-            let [xi, eta] = [extent.xi, extent.eta].map(|[from, to]| to - from);
+            let [xi, eta] = [extent.xi, extent.eta].map(Interval::width);
             Some(format!("{xi:.3} × {eta:.3}"))
         })
     },

@@ -16,8 +16,8 @@ use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result, in_order};
 use crate::export::{
-    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Interval,
-    Loop, LowerSurface, NetCdf, PatchMesh, PatchPicture, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Loop,
+    LowerSurface, NetCdf, PatchMesh, PatchPicture, PatchRow, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
     interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
@@ -431,13 +431,13 @@ fn loops(part: &Part) -> Vec<Loop> {
 }
 
 /// Gives INTERPEN's own table: the intervals of η at every ξ of the grid that lies in the patch, by component and η.
-fn intervals(part: &Part) -> Vec<Interval> {
+fn intervals(part: &Part) -> Vec<PatchRow> {
     let Some(patch) = &part.analysis.patch else { return Vec::new() };
     let mut rows = Vec::new();
     for &xi in &part.site.grid.xi {
         let mut here = patch.slices(xi);
         here.sort_by(|(a, p), (b, q)| a.cmp(b).then(p.eta[0].total_cmp(&q.eta[0])));
-        let row = |(component, slice): (usize, Slice)| Interval {
+        let row = |(component, slice): (usize, Slice)| PatchRow {
             xi,
             component,
             eta: slice.eta,

@@ -86,7 +86,7 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
         }
         let rail = rail();
         let covered = covered(&rail, group, &plane);
-        let xi = xi.clone().unwrap_or_else(|| within(automatic.xi, rail.reach().map(Interval::from)));
+        let xi = xi.clone().unwrap_or_else(|| within(automatic.xi, rail.reach()));
         on_rail(Grid { xi, eta, warning, sigma: None, groups: covered }, &rail)
     };
     groups.iter().enumerate().map(grid).collect()
@@ -94,10 +94,9 @@ pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Gr
 
 /// Lists the groups of the plane's patch that a group over the rail's surface covers.
 fn covered(rail: &RailArcLength<'_>, group: &GridGroup, plane: &[GridGroup]) -> Vec<usize> {
-    let [sigma, eta] = [group.extent.xi, group.extent.eta].map(Interval::from);
-    let xi = sigma.map(|sigma| rail.point(sigma).map_or(f64::NAN, |at| at.xi));
-    let under = |other: &Window| xi.meets(other.xi.into()) && eta.meets(other.eta.into());
-    (0..plane.len()).filter(|&k| under(&plane[k].extent)).collect()
+    let xi = group.extent.xi.map(|sigma| rail.point(sigma).map_or(f64::NAN, |at| at.xi));
+    let under = Window { xi, eta: group.extent.eta };
+    (0..plane.len()).filter(|&k| under.meets(&plane[k].extent)).collect()
 }
 
 /// Keeps the values of an automatic axis of σ \[mm\] that lie on the rail's surface; its margins may not.
@@ -117,7 +116,7 @@ fn on_rail(grid: Grid, rail: &RailArcLength<'_>) -> Result<Grid> {
             "it ends, overhangs or is covered by another part of the rail beyond: take a smaller range";
         Error::new("grid: xi", found, expected, advice)
     };
-    let Some(reach) = rail.reach().map(Interval::from) else {
+    let Some(reach) = rail.reach() else {
         return Err(beyond("no surface at C".into(), Interval::of(f64::NAN)));
     };
     let point =

@@ -87,7 +87,7 @@ fn nearness(upright: &Placement, [left, right]: [&GridGroup; 2], rules: &RegionR
 impl Overlap {
     /// Tells whether a point of the rail at this ξ of the upright frame \[mm\] is in it.
     pub fn holds(&self, xi: f64) -> bool {
-        Interval::from(self.extent.xi).contains(xi)
+        self.extent.xi.contains(xi)
     }
 
     /// Finds the patch under an approach δ \[mm\] in another frame, with the components that are of this part.
@@ -101,9 +101,9 @@ impl Overlap {
             return Patch::new(placement, approach, &Window::UNBOUNDED);
         }
         let xi = self.nearest.map(|xi| if xi.is_finite() { along(xi) } else { xi });
-        let mut patch = Patch::new(placement, approach, &Window { xi: xi.ends(), ..Window::UNBOUNDED });
-        let own = Interval::from(self.extent.xi).map(along);
-        patch.components.retain(|component| own.meets(component.xi.into()));
+        let mut patch = Patch::new(placement, approach, &Window { xi, ..Window::UNBOUNDED });
+        let own = self.extent.xi.map(along);
+        patch.components.retain(|component| own.meets(component.xi));
         patch
     }
 }

@@ -7,6 +7,7 @@ use super::site::Site;
 use crate::error::{Error, ErrorKind, Result};
 use crate::export::{Nodes, even_step};
 use crate::load::{Cells, HalfSpace, Largest, Pressures, on_wider_cells, press_alone};
+use crate::numerics::interval::Interval;
 use crate::patch::Window;
 
 /// Largest violation of contact's conditions relative to δ: the largest pressure then errs by 5e-4 of itself at most.
@@ -243,7 +244,7 @@ fn cells_of(axes: [&Vec<f64>; 2], steps: [f64; 2], parts: [usize; 2], most: usiz
     }
     let side = |k: usize| {
         let (half, axis) = (0.5 * steps[k], axes[k]);
-        [axis[0] - half, axis[axis.len() - 1] + half]
+        Interval::new(axis[0], axis[axis.len() - 1]).grown(half)
     };
     Cells::over(&Window { xi: side(0), eta: side(1) }, count)
 }

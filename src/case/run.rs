@@ -185,12 +185,11 @@ const AT_SLICE: f64 = 0.1;
 /// Gives the end of the slices \[mm\] that a patch on a rail that varies along the track reaches: there is no surface beyond.
 pub(super) fn end_reached(placement: &Placement, patch: &Patch) -> Option<f64> {
     let lofted = placement.lofted_rail()?;
-    let [from, to] = lofted.loft().reach().ends();
-    let along = patch.extent()?.eta.map(|eta| lofted.along_at(0.0, eta));
-    match along {
-        [behind, _] if behind <= from + AT_SLICE => Some(from),
-        [_, ahead] if ahead >= to - AT_SLICE => Some(to),
-        _ => None,
+    let (slices, along) = (lofted.loft().reach(), patch.extent()?.eta.map(|eta| lofted.along_at(0.0, eta)));
+    match () {
+        () if along.low <= slices.low + AT_SLICE => Some(slices.low),
+        () if along.high >= slices.high - AT_SLICE => Some(slices.high),
+        () => None,
     }
 }
 

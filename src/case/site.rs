@@ -5,6 +5,7 @@ use super::grids::{Grid, grids};
 use super::input::Case;
 use super::places::find;
 use crate::error::Result;
+use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 use crate::search::TrackSide;
 
@@ -129,15 +130,15 @@ impl Site {
 }
 
 /// First and last value.
-pub(super) fn ends(values: &[f64]) -> [f64; 2] {
+pub(super) fn ends(values: &[f64]) -> Interval {
     match values {
-        [first, .., last] => [*first, *last],
-        [only] => [*only; 2],
-        [] => [0.0; 2],
+        [first, .., last] => Interval::new(*first, *last),
+        [only] => Interval::of(*only),
+        [] => Interval::of(0.0),
     }
 }
 
 /// Tells which ends of an interval of η are those of the window's.
-pub(super) fn cut_by(window: [f64; 2], eta: [f64; 2]) -> [bool; 2] {
-    [eta[0] <= window[0], eta[1] >= window[1]]
+pub(super) fn cut_by(window: Interval, eta: Interval) -> [bool; 2] {
+    [eta.low <= window.low, eta.high >= window.high]
 }

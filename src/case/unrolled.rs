@@ -1,12 +1,11 @@
 //! What the picture of a part over the rail's surface shows, on axes of its own.
 
 use super::conformal::Conformal;
-use super::drawn::{DRAWN, DRAWN_TOLERANCE, Drawn};
+use super::drawn::{DRAWN_TOLERANCE, Drawn, places};
 use super::run::Part;
 use super::site::ends;
 use crate::conformal::{NormalGap, fill_normal_gap};
 use crate::export::{ConformalPicture, Header, Nodes, PicturedContact, RailNormal};
-use crate::mesh::equal_steps;
 use crate::separation::{EtaAxis, Values};
 
 /// t over the window of the grid whatever the spacing of the solver's cells, and the rail's normals.
@@ -25,10 +24,7 @@ impl<'a> Unrolled<'a> {
     pub(super) fn new(part: &'a Part) -> Option<Self> {
         let (site, conformal) = (&part.site, part.analysis.conformal.as_ref()?);
         let cells = [site.grid.sigma.as_deref()?, &site.grid.eta];
-        let [sigma, eta] = cells.map(|values| match ends(values) {
-            [from, to] if from < to => equal_steps(from, to, DRAWN),
-            [only, _] => vec![only],
-        });
+        let [sigma, eta] = cells.map(|values| places(ends(values)));
         let (normal_gap, eta) = (NormalGap::new(&site.contact.placement), EtaAxis::new(&eta));
         let mut gap = Values::new(sigma.len() * eta.eta().len());
         fill_normal_gap(&normal_gap, &sigma, &eta, DRAWN_TOLERANCE, &mut gap);

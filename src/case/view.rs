@@ -8,7 +8,7 @@ use crate::conformal::{NormalGap, RailArcLength, fill_normal_gap};
 use crate::export::{PageConformal, PageFrame, PageLoop, PagePressure, ViewContact, ViewPage};
 use crate::mesh::equal_steps;
 use crate::numerics::interval::Interval;
-use crate::patch::{Patch, Window};
+use crate::patch::{Component, Patch, Window};
 use crate::search::TrackSide;
 use crate::separation::{EtaAxis, Evaluator, Values, plan};
 
@@ -141,7 +141,7 @@ fn notes(run: &Run, n: usize) -> Vec<String> {
 fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let (placement, patch) = (&part.site.contact.placement, part.analysis.patch.as_ref());
     let window = window(part);
-    let [xi, eta] = [window.xi, window.eta].map(|range| through_zero(range.into(), n));
+    let [xi, eta] = [window.xi, window.eta].map(|range| through_zero(range, n));
     let axis = EtaAxis::new(&eta);
     let question = &run.case.question;
     let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
@@ -177,27 +177,26 @@ fn window(part: &Part) -> Window {
     let patch = part.analysis.patch.as_ref();
     let Some((patch, inner)) = patch.and_then(|patch| Some((patch, patch.extent()?))) else {
         let Window { xi, eta } = part.site.window();
-        return Window { xi: with_extent(xi.into()).ends(), eta: with_extent(eta.into()).ends() };
+        return Window { xi: with_extent(xi), eta: with_extent(eta) };
     };
-    let inner = conformal_box(part).map_or(inner, |Window { xi, eta }| inner.with(xi, eta));
+    let inner = conformal_box(part).map_or(inner, |on_rail| inner.hull(on_rail));
     let largest = (SHOWN * patch.approach).min(f64::MAX);
     let wide = Patch::new(placement, largest, &Window::UNBOUNDED);
-    let [xi, eta] = [inner.xi, inner.eta].map(Interval::from);
-    let around = wide.components.iter().filter(|c| xi.meets(c.xi.into()) && eta.meets(c.eta.into()));
-    let outer = around.fold(inner, |outer, c| outer.with(c.xi, c.eta));
+    let boxes = wide.components.iter().map(Component::extent);
+    let outer = boxes.filter(|part| inner.meets(part)).fold(inner, Window::hull);
     let shown = |inner: Interval, outer: Interval| {
         let shown = outer.cut(inner.grown(WIDEST * inner.width()));
-        with_extent(shown.grown(MARGIN * shown.width())).ends()
+        with_extent(shown.grown(MARGIN * shown.width()))
     };
-    Window { xi: shown(xi, outer.xi.into()), eta: shown(eta, outer.eta.into()) }
+    Window { xi: shown(inner.xi, outer.xi), eta: shown(inner.eta, outer.eta) }
 }
 
 /// Gives the box of ξ and η around the patch on the rail's surface; `None` where there is none.
 fn conformal_box(part: &Part) -> Option<Window> {
     let Window { xi: sigma, eta } = part.analysis.conformal.as_ref()?.patch.as_ref()?.extent()?;
     let rail = RailArcLength::new(&part.site.contact.placement);
-    let [from, to] = sigma.map(|sigma| on_plane(&rail, [sigma, 0.0])[0]);
-    (from < to).then_some(Window { xi: [from, to], eta })
+    let xi = sigma.map(|sigma| on_plane(&rail, [sigma, 0.0])[0]);
+    (xi.low < xi.high).then_some(Window { xi, eta })
 }
 
 /// Widens an interval that has no length.

@@ -14,7 +14,6 @@ use crate::error::Result;
 use crate::load::{HalfSpace, Located, Pressures, WeightedFrame, curvatures, press, under_total};
 use crate::lofted::LoftedBody;
 use crate::mesh::groups;
-use crate::numerics::interval::Interval;
 use crate::patch::{Patch, Window};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Side, Station};
@@ -133,18 +132,16 @@ impl Region {
 
     /// Tells whether the group of parts around C, which lies at `y` \[mm\] along the rail, holds a place of contact.
     fn holds(&self, place: &Reached, y: f64) -> bool {
-        let within = |at: f64, range: [f64; 2]| Interval::from(range).contains(at);
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
         let [xi, eta] = match self.placement.lofted() {
-            None => return self.extents.first().is_some_and(|extent| within(xi, extent.xi)),
+            None => return self.extents.first().is_some_and(|extent| extent.xi.contains(xi)),
             Some(lofted) if lofted.side() == Side::Rail => {
                 let [xi, eta, _] = lofted.seen([place.rail.x, place.y, place.rail.y]);
                 [xi, eta]
             }
             Some(_) => [xi, place.y - y],
         };
-        let holds = |extent: &Window| within(xi, extent.xi) && within(eta, extent.eta);
-        self.extents.first().is_some_and(holds)
+        self.extents.first().is_some_and(|extent| extent.contains(xi, eta))
     }
 
     /// Gives what the wheel sinks by \[mm\], of the region that touches first.

@@ -141,13 +141,7 @@ impl<'a> RailArcLength<'a> {
 
 impl<'a> Stretch<'a> {
     /// Makes the stretch of a branch from (ξ, σ) \[mm\] to the abscissa `far` \[mm\].
-    fn new(
-        branch: &'a Branch,
-        on_contact: bool,
-        far: f64,
-        (xi, begin): (f64, f64),
-        forward: bool,
-    ) -> Self {
+    fn new(branch: &'a Branch, on_contact: bool, far: f64, (xi, begin): (f64, f64), forward: bool) -> Self {
         let (curve, length) = match &branch.shape {
             BranchShape::Arc(arc) => {
                 // The contact segment goes through C with no rounding.
@@ -215,8 +209,7 @@ fn parameter(branch: &PolynomialBranch, from: f64, length: f64) -> f64 {
     let speed = |t: f64| value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1]);
     let (mut t, mut walked) = (from, 0.0);
     for _ in 0..STEPS {
-        let next = (t + (length - walked) / speed(t));
-        let next = branch.t.nearest(next);
+        let next = branch.t.nearest(t + (length - walked) / speed(t));
         let step = next - t;
         if step.abs() <= f64::EPSILON * (next - from).abs() {
             break;

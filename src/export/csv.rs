@@ -1,7 +1,8 @@
 //! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that reads back as the
 //! same number.
 
-use super::model::{Interval, Loop};
+use super::model::{Loop, PatchRow};
+use crate::numerics::interval::Interval;
 use crate::table::{COEFFICIENTS, ContactTable};
 use std::fmt::Write;
 
@@ -21,9 +22,9 @@ pub fn boundary_csv(loops: &[Loop]) -> String {
 /// Writes `interpen.csv`, INTERPEN's own table, with the columns xi, component, eta_min, eta_max and cut: one row for each
 /// interval of each grid ξ inside the patch. `cut` says which end of it is the window's, not the patch's: 0 none, 1 the lower
 /// one, 2 the upper one, 3 both.
-pub fn interpen_csv(intervals: &[Interval]) -> String {
+pub fn interpen_csv(rows: &[PatchRow]) -> String {
     let mut text = String::from("xi,component,eta_min,eta_max,cut\n");
-    for Interval { xi, component, eta: [low, high], cut } in intervals {
+    for PatchRow { xi, component, eta: Interval { low, high }, cut } in rows {
         let _ = writeln!(text, "{xi:?},{component},{low:?},{high:?},{}", code(*cut));
     }
     text
@@ -103,7 +104,8 @@ mod tests {
         let text = boundary_csv(&[square()]);
         let lines: Vec<_> = text.lines().collect();
         assert_eq!((lines.len(), lines[1], lines[5]), (6, "0,-1.0,-1.0", "0,-1.0,-1.0"));
-        let row = Interval { xi: 0.1 + 0.2, component: 1, eta: [-1e-9, 2.0], cut: [false, true] };
+        let row =
+            PatchRow { xi: 0.1 + 0.2, component: 1, eta: Interval::new(-1e-9, 2.0), cut: [false, true] };
         let text = "xi,component,eta_min,eta_max,cut\n0.30000000000000004,1,-1e-9,2.0,2\n";
         assert_eq!(interpen_csv(&[row]), text);
         let cuts = [[false; 2], [true, false], [false, true], [true; 2]];

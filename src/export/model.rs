@@ -4,6 +4,7 @@ use nalgebra::{Isometry2, Point3, Unit, Vector3};
 
 use crate::error::{Error, Result};
 use crate::mesh::TriangleMesh;
+use crate::numerics::interval::Interval;
 
 /// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two roundings of
 /// `from + i·step` at each end. A smaller factor would refuse grids that are even to rounding. A larger one would accept
@@ -294,13 +295,13 @@ pub struct Loop {
 
 /// One row of INTERPEN's table: an interval of η in which a line of constant ξ is inside the patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
+pub struct PatchRow {
     /// ξ of a grid column \[mm\].
     pub xi: f64,
     /// Number of the component, from 0.
     pub component: usize,
     /// Smallest and largest η \[mm\] with s ≤ δ.
-    pub eta: [f64; 2],
+    pub eta: Interval,
     /// Whether each of them is the end of the window, where s < δ.
     pub cut: [bool; 2],
 }

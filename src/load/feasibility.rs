@@ -109,10 +109,10 @@ fn least_vertical_gap(placement: &Placement) -> Option<(f64, f64, f64)> {
 
 /// (s, ξ, η) \[mm\] of the least s in the midplane.
 fn least_in_midplane(placement: &Placement) -> Option<(f64, f64, f64)> {
-    let [a, b] = placement.overlap()?;
+    let over = placement.overlap()?;
     // C itself first: rounding may put a stationary point next to it.
-    let mut least = (a <= 0.0 && b >= 0.0).then(|| (midplane_gap(placement, 0.0), 0.0, 0.0));
-    for xi in turning_points(placement, a, b) {
+    let mut least = over.contains(0.0).then(|| (midplane_gap(placement, 0.0), 0.0, 0.0));
+    for xi in turning_points(placement, over.low, over.high) {
         let gap = midplane_gap(placement, xi);
         if least.is_none_or(|(smallest, ..)| gap < smallest) {
             least = Some((gap, xi, 0.0));
@@ -131,10 +131,10 @@ fn least_under_skew(placement: &Placement) -> Option<(f64, f64, f64)> {
     for k in (0..valleys.creases.len()).filter(|&k| valleys.creases[k].is_valley) {
         intervals.clear();
         let smallest = least.map_or(f64::INFINITY, |(smallest, ..)| smallest);
-        monotone(&valleys, &placement.rail().section, k, reach, |[low, _]| low < smallest, &mut intervals);
-        for [from, to] in &intervals {
+        monotone(&valleys, &placement.rail().section, k, reach, |s| s.low < smallest, &mut intervals);
+        for interval in &intervals {
             // Where the rail steps, its right side is next to the joint.
-            for xi in [from.next_up(), *to] {
+            for xi in [interval.low.next_up(), interval.high] {
                 let spot = valleys.spot(k, xi);
                 let s = valleys.separation(&mut evaluator, xi, &spot);
                 if !s.is_nan() && least.is_none_or(|(smallest, ..)| s < smallest) {

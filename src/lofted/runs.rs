@@ -52,7 +52,7 @@ pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, besid
 
 /// Lists the cells of a strip at y \[mm\] that may lie in a run from which feet at ξ = 0 are sought, as stretches in order.
 fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64) -> Vec<Range<usize>> {
-    let (bay, near) = (strip.bay_at(y), Interval::of(0.0).grown(2.0 * BESIDE + strip.off()));
+    let (bay, near) = (strip.bay_at(y), Interval::symmetric(2.0 * BESIDE + strip.off()));
     let (mut found, mut waiting): (Vec<Range<usize>>, _) = (Vec::new(), vec![1]);
     while let Some(node) = waiting.pop() {
         let (cells, [x, z]) = (bay.cells(node), bay.bounds(node).map(Interval::ends));

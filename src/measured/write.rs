@@ -196,9 +196,8 @@ fn along_arc(arc: &Arc, step: f64) -> Result<Vec<[f64; 2]>> {
 }
 
 fn along_polynomial(polynomial: &Polynomial, step: f64) -> Result<Vec<[f64; 2]>> {
-    let [t0, t1] = polynomial.t;
     let at = |share: f64| {
-        let station = polynomial.station(t0 + share * (t1 - t0));
+        let station = polynomial.station(polynomial.t.at(share));
         [station.x, station.z]
     };
     // Number of chords that measure the arc length. The parts are smooth and short.

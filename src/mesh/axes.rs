@@ -45,8 +45,8 @@ impl Axes {
     /// Returns the rectangle that the cells cover: half a step beyond the outermost centres.
     pub fn window(&self) -> Window {
         let edges = |values: &[f64], step: f64| match values {
-            [first, .., last] => [first - step / 2.0, last + step / 2.0],
-            _ => [f64::NAN; 2],
+            [first, .., last] => Interval::new(*first, *last).grown(step / 2.0),
+            _ => Interval::of(f64::NAN),
         };
         Window { xi: edges(&self.xi, self.spacing[0]), eta: edges(&self.eta, self.spacing[1]) }
     }
@@ -164,7 +164,7 @@ impl GridGroup {
         let boxes = self.components.iter().map(|&k| sides(&parts[k].extent));
         let largest = boxes.max_by(|a, b| (a[0] * a[1]).total_cmp(&(b[0] * b[1])));
         Self {
-            extent: self.extent.with(other.extent.xi, other.extent.eta),
+            extent: self.extent.hull(other.extent),
             least: self.least.min(other.least),
             short_side: largest.map_or(self.short_side, |[short, _]| short),
             components: self.components,
@@ -173,18 +173,18 @@ impl GridGroup {
 }
 
 fn holds_contact(extent: &Window) -> bool {
-    [extent.xi, extent.eta].into_iter().all(|side| Interval::from(side).contains(0.0))
+    extent.contains(0.0, 0.0)
 }
 
 /// Returns the shorter and the longer side of a component's box \[mm\].
 fn sides(extent: &Window) -> [f64; 2] {
-    let [along, across] = [extent.xi, extent.eta].map(|[a, b]| b - a);
+    let [along, across] = [extent.xi, extent.eta].map(Interval::width);
     [along.min(across), along.max(across)]
 }
 
 /// Returns the distance of two boxes \[mm\]; 0 if they meet.
 fn distance(a: &Window, b: &Window) -> f64 {
-    let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[1]).max(b[0] - a[1]).max(0.0);
+    let gap = |a: Interval, b: Interval| (a.low - b.high).max(b.low - a.high).max(0.0);
     gap(a.xi, b.xi).hypot(gap(a.eta, b.eta))
 }
 
@@ -193,7 +193,7 @@ fn distance(a: &Window, b: &Window) -> f64 {
 fn unasked(window: &Window, step: f64) -> Result<Axes> {
     // The lattice has margins, and one more cell at each end that the window cuts.
     let more = 2.0 * MARGIN_CELLS + 2.0;
-    let sides = [window.xi, window.eta].map(|[a, b]| b - a);
+    let sides = [window.xi, window.eta].map(Interval::width);
     let counts = sides.map(|side| side / step + more);
     let square_cells = counts[0] * counts[1];
     if square_cells <= MOST_UNASKED {
@@ -215,11 +215,11 @@ fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
         }
     }
     // Cell i covers [(i − ½) Δ, (i + ½) Δ].
-    let range = |[a, b]: [f64; 2], step: f64| {
-        [(a / step + 0.5).floor() - MARGIN_CELLS, (b / step - 0.5).ceil() + MARGIN_CELLS]
+    let range = |side: Interval, step: f64| {
+        Interval::new((side.low / step + 0.5).floor(), (side.high / step - 0.5).ceil()).grown(MARGIN_CELLS)
     };
     let (xi, eta) = (range(window.xi, spacing[0]), range(window.eta, spacing[1]));
-    let [along, across] = [xi, eta].map(|[first, last]| last - first + 1.0);
+    let [along, across] = [xi, eta].map(|cells| cells.width() + 1.0);
     let fits = along <= MOST_ON_AXIS && across <= MOST_ON_AXIS && along * across <= MOST_POINTS;
     if !fits {
         let found = format!("{along:e} x {across:e} cells over the patch");
@@ -228,8 +228,8 @@ fn lattice(window: &Window, spacing: [f64; 2]) -> Result<Axes> {
             Error::new("grid: spacing", found, expected, "take a larger step").of_kind(ErrorKind::Limit)
         );
     }
-    let centres = |[first, last]: [f64; 2], step: f64| {
-        (first as i64..=last as i64).map(|i| i as f64 * step).collect::<Vec<f64>>()
+    let centres = |cells: Interval, step: f64| {
+        (cells.low as i64..=cells.high as i64).map(|i| i as f64 * step).collect::<Vec<f64>>()
     };
     let [xi, eta] = [centres(xi, spacing[0]), centres(eta, spacing[1])];
     Ok(Axes { xi, eta, spacing, square_cells: None })
@@ -243,7 +243,10 @@ mod tests {
     fn the_lattice_covers_the_box_with_its_margin_and_no_more() -> Result<()> {
         for [a, b] in [[-1.0, 1.0], [-0.3, 0.7], [5.0, 9.1], [-7.2, -3.0]] {
             for step in [0.1, 0.07, 0.5] {
-                let axes = lattice(&Window { xi: [a, b], eta: [-2.0, 2.0] }, [step, 0.25])?;
+                let axes = lattice(
+                    &Window { xi: Interval::new(a, b), eta: Interval::symmetric(2.0) },
+                    [step, 0.25],
+                )?;
                 let n = axes.xi.len();
                 let edges = |k: usize| [axes.xi[k] - step / 2.0, axes.xi[k] + step / 2.0];
                 assert!(edges(1)[1] <= a + 1e-12 && edges(2)[1] >= a - 1e-12, "[{a}, {b}] {step}");
@@ -260,7 +263,7 @@ mod tests {
         for (sides, step) in
             [([60.0, 1e-9], 1e-10), ([1e-3, 50.0], 1e-5), ([60.0, 50.0], 1e-7), ([1.0, 250.0], 0.0625)]
         {
-            let [xi, eta] = sides.map(|side: f64| [-side / 2.0, side / 2.0]);
+            let [xi, eta] = sides.map(|side: f64| Interval::symmetric(side / 2.0));
             let axes = unasked(&Window { xi, eta }, step)?;
             let cells = (axes.xi.len() * axes.eta.len()) as f64;
             assert!(cells <= MOST_UNASKED && cells > 0.8 * MOST_UNASKED, "{sides:?}: {cells}");
@@ -277,7 +280,7 @@ mod tests {
 
     #[test]
     fn bad_steps_and_too_many_cells_are_refused() {
-        let window = Window { xi: [-1.0, 1.0], eta: [-1.0, 1.0] };
+        let window = Window { xi: Interval::symmetric(1.0), eta: Interval::symmetric(1.0) };
         for spacing in [[0.0, 1.0], [1.0, f64::NAN], [-1.0, 1.0], [1e-5, 1e-5], [1e-300, 1.0]] {
             assert!(lattice(&window, spacing).is_err(), "{spacing:?}");
         }

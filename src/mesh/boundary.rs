@@ -71,8 +71,7 @@ pub(super) struct BoundaryTracer<'a> {
 impl<'a> BoundaryTracer<'a> {
     /// Makes the tracer of a component.
     pub(super) fn new(component: &'a Component) -> Self {
-        let sides = [component.xi, component.eta].map(|[from, to]| to - from);
-        Self { bands: &component.bands, extent: sides[0] + sides[1] }
+        Self { bands: &component.bands, extent: component.xi.width() + component.eta.width() }
     }
 
     /// Returns all rings of the component.
@@ -148,10 +147,10 @@ impl<'a> BoundaryTracer<'a> {
         };
         let band = &self.bands[side.band];
         let mut parameters = vec![0.0];
-        for [from, to] in band.pieces() {
-            let n = (SAMPLES_PER_SIDE * (to - from)).round().max(LEAST_SAMPLES);
-            parameters.extend((1..n as usize).map(|k| from + (to - from) * k as f64 / n));
-            parameters.push(to);
+        for t in band.pieces() {
+            let n = (SAMPLES_PER_SIDE * t.width()).round().max(LEAST_SAMPLES);
+            parameters.extend((1..n as usize).map(|k| t.low + t.width() * k as f64 / n));
+            parameters.push(t.high);
         }
         if side.branch == 1 {
             parameters.reverse();
@@ -168,9 +167,9 @@ impl<'a> BoundaryTracer<'a> {
                 let band = &self.bands[side.band];
                 let t = if side.branch == 0 { parameter } else { 1.0 - parameter };
                 let xi = match t {
-                    0.0 => band.xi[0],
-                    1.0 => band.xi[1],
-                    t => band.grading().xi(t).clamp(band.xi[0], band.xi[1]),
+                    0.0 => band.xi.low,
+                    1.0 => band.xi.high,
+                    t => band.xi.nearest(band.grading().xi(t)),
                 };
                 Point2::new(xi, band.slice(xi).eta[side.branch])
             }

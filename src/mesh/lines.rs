@@ -24,8 +24,7 @@ pub(super) fn lines(bands: &[Band], own: &[f64]) -> Vec<Vec<f64>> {
     pairs.sort_by(|p, q| bands[p[1]].xi[0].total_cmp(&bands[q[1]].xi[0]));
     let takes = |k: usize| {
         pairs.iter().any(|&[left, right]| {
-            let widths =
-                [(left, 1), (right, 0)].map(|(band, end)| Interval::from(bands[band].sides[end]).width());
+            let widths = [(left, 1), (right, 0)].map(|(band, end)| bands[band].sides[end].width());
             (k == left && widths[0] > widths[1]) || (k == right && widths[1] > widths[0])
         })
     };
@@ -79,7 +78,7 @@ impl BandMeeting {
             let mut width = 0.0f64;
             for (other, shares) in bands.iter().zip(shares) {
                 for end in (0..2).filter(|&end| other.xi[end] == xi) {
-                    let side = Interval::from(other.sides[end]);
+                    let side = other.sides[end];
                     width = width.max(side.width());
                     eta.extend(shares.iter().map(|&share| between(side, share)));
                 }
@@ -99,7 +98,7 @@ impl BandMeeting {
         band: &Band,
         shares: &[f64],
     ) -> Vec<usize> {
-        let side = Interval::from(band.sides[usize::from(self.xi == band.xi[1])]);
+        let side = band.sides[usize::from(self.xi == band.xi[1])];
         let mut evaluator = Evaluator::new(placement);
         let place = |share: &f64| {
             let eta = between(side, *share);

@@ -248,7 +248,7 @@ impl StripBuilder<'_> {
     fn moments(&self, band: &Band, xi: Interval) -> Moments {
         // A mean of values that change sign is computed from an offset. The demanded accuracy then refers to the size of
         // the offset.
-        let offset = band.sides.into_iter().flatten().fold(xi.width(), |most, eta| eta.abs().max(most));
+        let offset = band.sides.into_iter().fold(xi.width(), |most, eta| eta.magnitude().max(most));
         let weighted = |at: &Places| {
             let [low, high] = &at.edges;
             let width: Lanes = lanes(|k| high[k] - low[k]);
@@ -260,7 +260,7 @@ impl StripBuilder<'_> {
             ]
         };
         let demand = [AREA_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND, CENTROID_DEMAND];
-        let [area, along, across, half] = band.integrals(xi.ends(), false, weighted, demand);
+        let [area, along, across, half] = band.integrals(xi, false, weighted, demand);
         Moments { area, xi: xi.low + along / area, middle: across / area - offset, half: half / area }
     }
 }

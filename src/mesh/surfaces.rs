@@ -49,7 +49,7 @@ const SEEN: f64 = 1e-9;
 /// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
 /// # let pair = Pair::new(rail, wheel, 460.0)?;
 /// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
-/// let window = Window { xi: [-5.0, 5.0], eta: [-8.0, 8.0] };
+/// let window = Window { xi: Interval::symmetric(5.0), eta: Interval::symmetric(8.0) };
 /// let [rail, wheel] = Surface::around(&placement, &window, Some(0.05))?;
 /// assert_eq!(rail.points.len(), rail.n[0] * rail.n[1]);
 /// assert!(wheel.points.iter().any(|point| point.coords.norm() == 0.0)); // C is a point of the mesh
@@ -76,7 +76,7 @@ impl Surface {
     pub fn around(placement: &Placement, window: &Window, approach: Option<f64>) -> Result<[Self; 2]> {
         let reach = WIDEST * placement.rolling_radius().min(placement.rail().axle_distance());
         let window = Window { eta: window.eta.map(|eta| eta.clamp(-reach, reach)), ..*window };
-        let side = (window.xi[1] - window.xi[0]).max(window.eta[1] - window.eta[0]);
+        let side = window.xi.width().max(window.eta.width());
         let limits = FACET_LIMITS.map(|share| share * side);
         let wanted = approach.filter(|approach| *approach > 0.0).map(|approach| FACET_SHARE * approach);
         let tolerance = wanted.map_or(limits.high, |wanted| limits.nearest(wanted));
@@ -98,7 +98,7 @@ impl Surface {
         if let Some(lofted) = placement.lofted_rail() {
             return Self::lofted(lofted, window);
         }
-        let stations = trace(placement.rail(), window.xi.into(), tolerance)?;
+        let stations = trace(placement.rail(), window.xi, tolerance)?;
         let radius = placement.rolling_radius();
         let along: Vec<f64> = angles(window.eta, radius, radius, tolerance / 2.0)?
             .into_iter()
@@ -168,7 +168,7 @@ impl Surface {
             return Self::lofted(lofted, window);
         }
         let own = in_wheel_directions(placement, window);
-        let stations = trace(placement.wheel(), own.xi.into(), tolerance / 2.0)?;
+        let stations = trace(placement.wheel(), own.xi, tolerance / 2.0)?;
         let radii = || stations.iter().map(|s| placement.wheel_radius() - s.z);
         let [smallest, largest] = [radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max)];
         let psi = angles(own.eta, smallest, largest, tolerance / 2.0)?;
@@ -251,11 +251,11 @@ impl Surface {
 }
 
 fn check(placement: &Placement, window: &Window, tolerance: f64) -> Result<()> {
-    for v in window.xi.into_iter().chain(window.eta) {
+    for v in [window.xi, window.eta].into_iter().flat_map(Interval::ends) {
         finite("surface: window", v)?;
     }
-    let wide = window.eta.into_iter().any(|eta| eta.abs() >= placement.rolling_radius());
-    if wide || window.xi[0] >= window.xi[1] || window.eta[0] >= window.eta[1] {
+    let wide = window.eta.magnitude() >= placement.rolling_radius();
+    if wide || window.xi.low >= window.xi.high || window.eta.low >= window.eta.high {
         let found = format!("{window:?}");
         let expected = format!("ascending ends, |η| below {} mm", placement.rolling_radius());
         return Err(Error::new("surface: window", found, expected, "take the grid's window"));
@@ -271,12 +271,13 @@ fn check(placement: &Placement, window: &Window, tolerance: f64) -> Result<()> {
 /// sideways as it turns.
 fn in_wheel_directions(placement: &Placement, window: &Window) -> Window {
     let skew = placement.skew_rotation();
-    let corners = window.xi.into_iter().flat_map(|xi| window.eta.map(|eta| Vector2::new(xi, eta)));
+    let corners =
+        window.xi.ends().into_iter().flat_map(|xi| window.eta.ends().map(|eta| Vector2::new(xi, eta)));
     let own: Vec<_> = corners.map(|corner| skew.inverse_transform_vector(&corner)).collect();
     let [xi, eta] = [0, 1].map(|k| Interval::around(own.iter().map(|p| p[k])));
-    let (axle, widest) = (placement.rolling_radius(), eta.size());
+    let (axle, widest) = (placement.rolling_radius(), eta.magnitude());
     let aside = widest * widest / (axle + axle.hypot(widest)) * placement.wheel().section.frame.sin;
-    Window { xi: [xi.low - aside.max(0.0), xi.high - aside.min(0.0)], eta: eta.ends() }
+    Window { xi: Interval::new(xi.low - aside.max(0.0), xi.high - aside.min(0.0)), eta }
 }
 
 /// Refuses more points than a surface may have.
@@ -288,13 +289,13 @@ fn bounded(count: f64) -> Result<()> {
     Err(Error::new("surface", found, expected, "take a coarser tolerance").of_kind(ErrorKind::Limit))
 }
 
-/// Returns the angles about the axle, in equal steps, at which a point at this radius reaches from `eta[0]` to `eta[1]`. 0
+/// Returns the angles about the axle, in equal steps, at which a point at this radius reaches from one end of η to the other. 0
 /// is one of them if it is between. The chords of the steps keep the tolerance on the largest radius.
 ///
 /// # Errors
 /// More angles than a surface may have points.
-fn angles(eta: [f64; 2], radius: f64, largest: f64, tolerance: f64) -> Result<Vec<f64>> {
-    let [from, to] = eta.map(|eta| (eta / radius).clamp(-1.0, 1.0).asin());
+fn angles(eta: Interval, radius: f64, largest: f64, tolerance: f64) -> Result<Vec<f64>> {
+    let [from, to] = eta.ends().map(|eta| (eta / radius).clamp(-1.0, 1.0).asin());
     let step = arc_step(largest, tolerance);
     bounded((to - from) / step)?;
     let spread = |from: f64, to: f64| {

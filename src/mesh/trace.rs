@@ -187,6 +187,6 @@ fn on_arc(arc: &Arc, share: f64) -> Station {
 }
 
 fn on_polynomial(polynomial: &Polynomial, share: f64) -> Station {
-    let [from, to] = polynomial.t;
-    polynomial.station(if share == 1.0 { to } else { from + (to - from) * share })
+    let t = polynomial.t;
+    polynomial.station(if share == 1.0 { t.high } else { t.at(share) })
 }

@@ -41,6 +41,12 @@ impl Interval {
         Self::new(number, number)
     }
 
+    /// Makes the interval from −half to half.
+    #[inline(always)]
+    pub const fn symmetric(half: f64) -> Self {
+        Self::new(-half, half)
+    }
+
     /// Makes the interval between two numbers, whichever is larger.
     #[inline]
     pub fn between(a: f64, b: f64) -> Self {
@@ -63,12 +69,6 @@ impl Interval {
     #[inline(always)]
     pub fn width(self) -> f64 {
         self.high - self.low
-    }
-
-    /// Gives the largest size of the interval's numbers.
-    #[inline(always)]
-    pub fn size(self) -> f64 {
-        self.low.abs().max(self.high.abs())
     }
 
     /// Gives the middle.
@@ -119,10 +119,16 @@ impl Interval {
         self.low > self.high
     }
 
-    /// Gives the number of the interval that is nearest to a number.
+    /// Gives the number of the interval that is nearest to a number; NaN of NaN.
     #[inline(always)]
     pub fn nearest(self, number: f64) -> f64 {
-        number.max(self.low).min(self.high)
+        if number < self.low {
+            self.low
+        } else if number > self.high {
+            self.high
+        } else {
+            number
+        }
     }
 
     /// Gives the smallest interval that holds this one and a number.

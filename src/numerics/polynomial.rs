@@ -141,16 +141,16 @@ pub fn recentred<T: Copy + Add<Output = T> + Mul<Output = T>>(c: &[T], centre: T
 /// Computes bounds of p over an interval of t from its Bernstein coefficients. They are never too narrow by more than rounding, exact
 /// at the ends, and converge with the square of the width.
 pub fn range(c: &[f64], t: Interval) -> Interval {
-    Interval::around(bernstein(c, t.low, t.high))
+    Interval::around(bernstein(c, t))
 }
 
-/// Computes the Bernstein coefficients of p over \[t0, t1\]. p, or a curve with such coordinates, lies in their hull.
-pub fn bernstein(c: &[f64], t0: f64, t1: f64) -> Vec<f64> {
-    let mut shifted = recentred(c, t0);
+/// Computes the Bernstein coefficients of p over an interval of t. p, or a curve with such coordinates, lies in their hull.
+pub fn bernstein(c: &[f64], t: Interval) -> Vec<f64> {
+    let mut shifted = recentred(c, t.low);
     let mut power = 1.0;
     for c in &mut shifted {
         *c *= power;
-        power *= t1 - t0;
+        power *= t.width();
     }
     let n = shifted.len().saturating_sub(1);
     let coefficient = |i: usize| {

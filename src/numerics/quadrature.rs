@@ -188,7 +188,7 @@ mod tests {
 
     fn integral(f: &mut impl FnMut(f64) -> f64, a: f64, b: f64, relative: f64) -> f64 {
         let mut many = |x: &[f64]| [padded(x.iter().map(|x| f(*x)))];
-        let [sum] = halved(&mut many, [a, b], [relative], false);
+        let [sum] = halved(&mut many, Interval::new(a, b), [relative], false);
         sum
     }
 

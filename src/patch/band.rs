@@ -181,7 +181,11 @@ impl Band {
     pub(super) fn slope(&self, branch: usize, xi: f64) -> f64 {
         let Some(stretch) = self.stretch(xi) else { return f64::NAN };
         let [[[low], [high]], slopes] = stretch.edges_and_slopes(&[xi]);
-        if self.clipped(Interval::new(low, high))[branch] == [low, high][branch] { slopes[branch][0] } else { 0.0 }
+        if self.clipped(Interval::new(low, high))[branch] == [low, high][branch] {
+            slopes[branch][0]
+        } else {
+            0.0
+        }
     }
 
     /// Returns ∫ f dξ over a range within `xi` for several functions of ξ and the edges, which are given at 16 places at once, together
@@ -195,7 +199,8 @@ impl Band {
     ) -> [f64; N] {
         let grading = self.grading();
         let ends = self.stretches.iter().map(|stretch| stretch.xi.high).chain(self.corners.iter().copied());
-        let mut cuts: Vec<f64> = ends.filter(|cut| xi.low < *cut && *cut < xi.high).chain([xi.high]).collect();
+        let mut cuts: Vec<f64> =
+            ends.filter(|cut| xi.low < *cut && *cut < xi.high).chain([xi.high]).collect();
         cuts.sort_by(f64::total_cmp);
         // The ends of the parameter are exactly 0 and 1, in spite of rounding.
         let parameter = |xi: f64| match self.xi.ends().iter().position(|end| *end == xi) {
@@ -267,7 +272,7 @@ impl Places {
         for branch in 0..2 {
             for (eta, slope) in self.edges[branch].iter_mut().zip(&mut self.slopes[branch]) {
                 if !window.contains(*eta) {
-                    (*eta, *slope) = (window.nearest(*eta), 0.0);
+                    (*eta, *slope) = (eta.max(window.low).min(window.high), 0.0);
                 }
             }
         }

@@ -55,6 +55,13 @@ pub struct Component {
     pub(crate) bands: Vec<Band>,
 }
 
+impl Component {
+    /// Returns the rectangle around the component.
+    pub fn extent(&self) -> Window {
+        Window { xi: self.xi, eta: self.eta }
+    }
+}
+
 /// The patch {s < δ} inside a window.
 ///
 /// # Examples
@@ -118,9 +125,10 @@ impl Patch {
         let inside = |inner: Interval, outer: Interval| outer.low < inner.low && inner.high < outer.high;
         let mut components = Vec::new();
         for component in &self.components {
-            if inside(component.xi, window.xi) && inside(component.eta, window.eta) {
+            let extent = component.extent();
+            if inside(extent.xi, window.xi) && inside(extent.eta, window.eta) {
                 components.push(component.clone());
-            } else if component.xi.meets(window.xi) && component.eta.meets(window.eta) {
+            } else if extent.meets(window) {
                 return None;
             }
         }
@@ -134,7 +142,8 @@ impl Patch {
         for (index, component) in self.components.iter().enumerate() {
             let bands = &component.bands;
             let ended = bands.iter().any(|band| band.xi.high == xi);
-            let over = |band: &&Band| (band.xi.low < xi && xi <= band.xi.high) || (xi == band.xi.low && !ended);
+            let over =
+                |band: &&Band| (band.xi.low < xi && xi <= band.xi.high) || (xi == band.xi.low && !ended);
             slices.extend(bands.iter().filter(over).map(|band| (index, band.slice(xi))));
         }
         slices
@@ -152,7 +161,7 @@ impl Patch {
 
     /// Returns the smallest box around all components, or `None` for an empty patch.
     pub fn extent(&self) -> Option<Window> {
-        self.components.iter().map(|c| Window { xi: c.xi, eta: c.eta }).reduce(Window::hull)
+        self.components.iter().map(Component::extent).reduce(Window::hull)
     }
 }
 

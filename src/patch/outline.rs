@@ -1,6 +1,6 @@
 //! Cuts off the slices of a patch at the edges of a window.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::skewed::circle::{BESIDE, Turned};
 use super::skewed::slicer::Edge;
@@ -15,7 +15,7 @@ use crate::placement::Placement;
 const SLOPE_NOISE: f64 = 1e-11;
 
 /// A rectangle of the ξ–η plane \[mm\] inside which a patch is sought.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     /// Range of ξ \[mm\].
     pub xi: Interval,
@@ -27,8 +27,18 @@ impl Window {
     /// The whole plane: only the ends of the bodies bound the patch.
     pub const UNBOUNDED: Self = Self { xi: Interval::ALL, eta: Interval::ALL };
 
+    /// Tells whether the two share a point, one on their edges included.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.xi.meets(other.xi) && self.eta.meets(other.eta)
+    }
+
+    /// Tells whether a point lies in the window, its edges included.
+    pub fn contains(&self, xi: f64, eta: f64) -> bool {
+        self.xi.contains(xi) && self.eta.contains(eta)
+    }
+
     /// Returns the smallest window that holds both.
-    pub(crate) fn hull(self, other: Self) -> Self {
+    pub fn hull(self, other: Self) -> Self {
         Self { xi: self.xi.hull(other.xi), eta: self.eta.hull(other.eta) }
     }
 }
@@ -101,9 +111,7 @@ impl<'a> Outline<'a> {
     /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
     /// window's edge next to it, because s rises away from the valley.
     pub(super) fn floor(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        let lowest = self.slicer.valley(valley, xi);
-        // NaN stays NaN: there is no surface.
-        if lowest.is_nan() { lowest } else { self.window.eta.nearest(lowest) }
+        self.window.eta.nearest(self.slicer.valley(valley, xi))
     }
 
     /// Returns s − δ \[mm\] at the place of a valley, or at the window's edge next to it. It is infinite if s rises above δ

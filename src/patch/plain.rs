@@ -97,7 +97,10 @@ fn closed(
     let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
     let sides = places.map(|(end, xi)| {
         let edges = outline.edges(None, xi).filter(|_| end != Some(End::Tip));
-        edges.map_or_else(|| Interval::of(outline.floor(None, xi)), |[low, high]| Interval::new(low.eta, high.eta))
+        edges.map_or_else(
+            || Interval::of(outline.floor(None, xi)),
+            |[low, high]| Interval::new(low.eta, high.eta),
+        )
     });
     Band::new(Interval::new(from, to), [begin, end], sides, outline.window.eta)
 }

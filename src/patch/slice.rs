@@ -181,9 +181,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns whether s over the tangent plane of a rail rises from one lowest place of every ξ to both sides.
     pub(super) fn has_one_valley(&self, xi: &Lanes) -> bool {
-        let one = |skewed: &Skewed<'_>| {
-            skewed.valleys.is_one_between(Interval::between(xi[0], xi[MANY - 1]))
-        };
+        let one = |skewed: &Skewed<'_>| skewed.valleys.is_one_between(Interval::between(xi[0], xi[MANY - 1]));
         self.varying.is_none() && self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
     }
 

@@ -137,7 +137,8 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
         let length = xi.width();
         let nodes = &*NODES;
         let away = |k: usize| length * ((1.0 + nodes[k]) / 2.0).powi(2);
-        let [low, high] = (self.edges)(&lanes(|k| if from == 0 { xi.low + away(k) } else { xi.high - away(k) }));
+        let [low, high] =
+            (self.edges)(&lanes(|k| if from == 0 { xi.low + away(k) } else { xi.high - away(k) }));
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
         let rounding = rounding(largest(&low).max(largest(&high)), narrowest, noise);
         let [(low, first), (high, second)] = [low, high].map(|values| Series::new(&values, rounding));
@@ -280,7 +281,12 @@ mod tests {
     #[test]
     fn an_ellipse_is_one_stretch() {
         let half = |x: f64| ((x + 1.0) * (2.0 - x)).sqrt();
-        let found = fitted(|x| [0.1 * x - half(x), 0.1 * x + half(x)], Interval::new(-1.0, 2.0), [true; 2], [false; 2]);
+        let found = fitted(
+            |x| [0.1 * x - half(x), 0.1 * x + half(x)],
+            Interval::new(-1.0, 2.0),
+            [true; 2],
+            [false; 2],
+        );
         let [stretch] = found.as_slice() else { panic!("{}", found.len()) };
         for x in [-1.0, -0.999_999, 0.3, 2.0] {
             let [[[low], [high]], slopes] = stretch.edges_and_slopes(&[x]);
@@ -310,7 +316,8 @@ mod tests {
 
     #[test]
     fn a_kink_is_cut_out() {
-        let found = fitted(|x: f64| [-1.0, 1.0 + (x - 0.3).abs()], Interval::new(0.0, 1.0), [false; 2], [false; 2]);
+        let found =
+            fitted(|x: f64| [-1.0, 1.0 + (x - 0.3).abs()], Interval::new(0.0, 1.0), [false; 2], [false; 2]);
         let area: f64 = (0..10_000)
             .map(|k| (f64::from(k) + 0.5) / 10_000.0)
             .map(|x| {

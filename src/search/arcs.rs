@@ -134,7 +134,7 @@ impl ArcPair<'_, '_> {
             return;
         }
         let (above, below) = (abscissae(&outline), abscissae(rail));
-        let x = above.cut(below).at(0.5);
+        let x = above.cut(below).middle();
         let (point, foot) = (between(ends, above, x, 0.0), between(rail, below, x, 0.0));
         if let (Some(point), Some(foot)) = (point, foot) {
             self.take(on_line(point), on_line(foot));

@@ -118,8 +118,7 @@ impl TreeBuilder {
         };
         let mut last: Option<Station> = None;
         for piece in &section.pieces {
-            let branch = &section.branches[piece.branch];
-            let xi = Interval::from(piece.xi);
+            let (branch, xi) = (&section.branches[piece.branch], piece.xi);
             let [start, end] = xi.ends().map(|x| branch.station(x));
             match last {
                 None => self.fan(&start, material_left, start.angle()),
@@ -165,7 +164,7 @@ impl TreeBuilder {
             Side::Rail if turn < -LEAST_KINK => Interval::new(from + turn, from),
             _ => return,
         };
-        let angles = angles.cut(Interval::new(-FRAC_PI_2, FRAC_PI_2));
+        let angles = angles.cut(Interval::symmetric(FRAC_PI_2));
         if angles.low >= angles.high {
             return;
         }
@@ -218,13 +217,13 @@ impl TreeBuilder {
     /// Cuts a polynomial until its bounds are narrow enough to be useful, and appends the parts.
     fn cut(&mut self, first: usize, count: usize, range: Interval, depth: u32) {
         let own = &self.coefficients[first..first + count];
-        let (reach, middle, [a, b]) = (Reach::of(own, range), range.at(0.5), range.ends());
+        let (reach, middle, [a, b]) = (Reach::of(own, range), range.middle(), range.ends());
         if depth > 0 && reach.is_wide(range.width()) && a < middle && middle < b {
-            return range.split(middle).into_iter().for_each(|half| self.cut(first, count, half, depth - 1));
+            return range.halves().into_iter().for_each(|half| self.cut(first, count, half, depth - 1));
         }
         let [x, z] = [0, 1].map(|axis| {
             let c: Vec<f64> = own.iter().map(|c| c[axis]).collect();
-            bernstein(&c, a, b)
+            bernstein(&c, range)
         });
         let hull: Vec<[f64; 2]> = x.into_iter().zip(z).map(|(x, z)| [x, z]).collect();
         let stretch = Stretch { first, count, reach };
@@ -246,7 +245,7 @@ impl TreeBuilder {
         let bounds = Bounds::of_hull(hull, outer, turns, self.side, self.rounding);
         self.firsts.push(self.hull.len());
         self.hull.extend_from_slice(hull);
-        let middle = shape.place(&ends[0], &self.coefficients, range.at(0.5));
+        let middle = shape.place(&ends[0], &self.coefficients, range.middle());
         self.elements.push(Element { shape, range, ends, middle, bounds });
     }
 

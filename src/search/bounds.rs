@@ -132,17 +132,16 @@ impl Reach {
     ///
     /// Method: Bernstein coefficients; the tangents lie in the cone of the control vectors. Unbounded where
     /// the curve may stand still.
-    pub fn of(coefficients: &[[f64; 2]], parameters: Interval) -> Self {
-        let [a, b] = parameters.ends();
+    pub fn of(coefficients: &[[f64; 2]], t: Interval) -> Self {
         let [x, z] = [0, 1].map(|axis| coefficients.iter().map(|c| c[axis]).collect::<Vec<f64>>());
         let (dx, dz) = (derived(&x), derived(&z));
         let (hx, hz) = (derived(&dx), derived(&dz));
-        let largest = |c: &[f64]| range(c, a, b).into_iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let largest = |c: &[f64]| range(c, t).magnitude();
         let square = sum(&convolution(&dx, &dx), &convolution(&dz, &dz), 1.0);
         let cross = sum(&convolution(&dx, &hz), &convolution(&dz, &hx), -1.0);
-        let speed = range(&square, a, b).map(|v| v.max(0.0).sqrt());
+        let speed = range(&square, t).map(|v| v.max(0.0).sqrt());
         let cubes = speed.map(|v| (v * v * v).recip());
-        let turning = range(&cross, a, b);
+        let turning = range(&cross, t);
         let over = |v: f64, up: bool| if (v > 0.0) == up { v * cubes[0] } else { v * cubes[1] };
         let bounded = speed[0] > 0.0;
         let curvature = if bounded {
@@ -161,7 +160,7 @@ impl Reach {
             run: largest(&dx),
             rise: largest(&dz),
             bend: largest(&hx).hypot(largest(&hz)),
-            sine: cone(&bernstein(&dx, a, b), &bernstein(&dz, a, b)),
+            sine: cone(&bernstein(&dx, t), &bernstein(&dz, t)),
             curvature,
             change,
         }

@@ -105,7 +105,7 @@ fn yawed(attitude: &Attitude, bounds: &Bounds) -> Option<OutlineBounds> {
     if bounds.tangent.low >= steepest || bounds.tangent.high <= -steepest {
         return None;
     }
-    let tangent = cut(bounds.tangent, Interval::new(-steepest, steepest));
+    let tangent = cut(bounds.tangent, Interval::symmetric(steepest));
     let most = bounds.curvature.high;
     if most < 0.0 && 1.0 + most * (attitude.radius - bounds.z.high) * attitude.sin_yaw_squared() <= 0.0 {
         // The rings beside it hide it, even where its tangent is level: steeper rings are wider.

@@ -91,7 +91,7 @@ pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&Plac
     }
     let whole = |element: &Element, place, placed, curvature| {
         let range = element.range;
-        StretchPart { range, middle: range.at(0.5), place, placed, curvature, depth: 0 }
+        StretchPart { range, middle: range.middle(), place, placed, curvature, depth: 0 }
     };
     let placed = placed.copied();
     let placed = placed

@@ -12,7 +12,6 @@ use super::over_rail::{RailSearch, SearchPair, Work};
 use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, Result, finite};
 use crate::lofted::{FramedLoft, LoftedBody, section};
-use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 
@@ -358,7 +357,7 @@ impl Contact {
             Side::Rail => (rail, &mut here.rail_x),
             Side::Wheel => (wheel, &mut here.wheel_x),
         };
-        *x = Interval::from(section.reach().ok_or_else(nowhere)?).nearest(*x);
+        *x = section.reach().ok_or_else(nowhere)?.nearest(*x);
         Ok(here.placed(&pair)?.with_loft(Arc::new(framed)))
     }
 }

@@ -119,9 +119,9 @@ mod tests {
         {
             let axis = EtaAxis::new(&eta);
             let mut column = vec![f64::NAN; eta.len()];
-            for interval in [[0.0, 1.0], [1.0, 4.0], [4.0, f64::INFINITY]] {
+            for interval in [[0.0, 1.0], [1.0, 4.0], [4.0, f64::INFINITY]].map(Interval::from) {
                 for i in axis.ranges(interval).into_iter().flatten() {
-                    assert!(column[i].is_nan() && axis.u[i] <= interval[1], "{eta:?} {i}");
+                    assert!(column[i].is_nan() && axis.u[i] <= interval.high, "{eta:?} {i}");
                     column[i] = axis.u[i];
                 }
             }

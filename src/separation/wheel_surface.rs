@@ -213,7 +213,15 @@ impl<'a> Surface<'a> {
         };
         let SpanLanes { height: [height], w: [w], u: [[u0], _], .. } =
             self.span_from(&[xi], branch, [e.low], (begin, [on_profile]));
-        let span = Span { e, u: Interval::new(u0, f64::INFINITY), branch: piece.branch, piece: index, height, w, begin };
+        let span = Span {
+            e,
+            u: Interval::new(u0, f64::INFINITY),
+            branch: piece.branch,
+            piece: index,
+            height,
+            w,
+            begin,
+        };
         if e.high > FAR_END * u_max / (2.0 * w) && w > 0.0 {
             return span;
         }
@@ -411,9 +419,11 @@ impl<'a> Surface<'a> {
     pub fn point_at(&self, xi: f64, span: &Span, u: f64) -> Option<SagittaPoint> {
         let point = match self.points_at(&[xi], &self.lane(span), &[u]) {
             Some(points) => points.into(),
-            None => {
-                self.point(xi, span, bracketed(|e| self.point(xi, span, e).u - u, span.e.low, self.end(span))?)
-            }
+            None => self.point(
+                xi,
+                span,
+                bracketed(|e| self.point(xi, span, e).u - u, span.e.low, self.end(span))?,
+            ),
         };
         Some(point).filter(|point| point.w > 0.0)
     }

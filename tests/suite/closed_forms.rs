@@ -4,6 +4,7 @@
 //! form are in its own test.
 
 use twofloat::TwoFloat;
+use wheelrail::Interval;
 use wheelrail::load::curvatures;
 use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -153,7 +154,7 @@ fn crossed_cylinders_interpenetrate_in_an_ellipse() {
     let mut last = None;
     for delta in [1e-1, 1e-2, 1e-3, 1e-4] {
         let semi = [(2.0 * crown * delta).sqrt(), (2.0 * wheel * delta).sqrt()];
-        let window = Window { xi: [-30.0, 30.0], eta: [-40.0, 40.0] };
+        let window = Window { xi: Interval::symmetric(30.0), eta: Interval::symmetric(40.0) };
         let patch = Patch::new(&placement, delta, &window);
         assert_eq!(patch.components.len(), 1);
         let component = &patch.components[0];
@@ -192,7 +193,7 @@ fn patch_areas_agree_with_a_polar_quadrature() {
     );
     let cone = placed(arc(-80.0, 80.0, Half::Upper, [-50.0, 50.0]), line(0.4, 60.0), 460.0, [0.0, -10.0]);
     for (placement, delta) in [(&conforming, 0.002), (&cone, 0.05), (&cone, 1e-5)] {
-        let window = Window { xi: [-50.0, 50.0], eta: [-50.0, 50.0] };
+        let window = Window { xi: Interval::symmetric(50.0), eta: Interval::symmetric(50.0) };
         let patch = Patch::new(placement, delta, &window);
         assert_eq!(patch.components.len(), 1);
         let polar = polar_area(placement, delta);

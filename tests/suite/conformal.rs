@@ -2,6 +2,7 @@
 
 use crate::common::{folder, profile};
 use wheelrail::Evaluator;
+use wheelrail::Interval;
 use wheelrail::case::{Case, Profiles, Run, SILENT};
 use wheelrail::conformal::{GapPoint, NormalGap, fill_normal_gap};
 use wheelrail::scene::{self, Scene};
@@ -188,7 +189,7 @@ fn the_gap_tends_to_the_separation_on_flat_rails() {
 fn rays_that_miss_are_no_numbers_and_overlap_is_negative() {
     let placement = arcs(13.0, 15.0, 460.0, 0.0);
     let gap = NormalGap::new(&placement);
-    let [low, high] = gap.rail().reach().expect("a range of σ");
+    let Interval { low, high } = gap.rail().reach().expect("a range of σ");
     assert!((high - 13.0 * 0.95f64.asin()).abs() < 1e-13 && (low + high).abs() < 1e-13);
     assert!(gap.gap(high + 1e-9, 0.0).is_nan() && gap.point(high + 1e-9, 0.0).is_none());
     assert!(gap.gap(0.0, 470.0).is_nan());
@@ -231,7 +232,7 @@ fn on_a_flat_rail_the_conformal_patch_is_the_patch() {
     let pair = Pair::new(line, tread, 460.0).expect("a pair");
     for skew in [0.0, 0.03] {
         let placement = pair.placed(0.0, 0.0, skew).expect("a placement");
-        let window = Window { xi: [-12.0, 12.0], eta: [-14.0, 14.0] };
+        let window = Window { xi: Interval::symmetric(12.0), eta: Interval::symmetric(14.0) };
         let found = Patch::over_rail(&placement, 0.05, &window);
         let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
         let ([found], [part]) = (&found.components[..], &patch.components[..]) else { panic!("{found:?}") };
@@ -242,7 +243,7 @@ fn on_a_flat_rail_the_conformal_patch_is_the_patch() {
                 (found.xi[end] - part.xi[end]).abs() < 1e-7 && (found.eta[end] - part.eta[end]).abs() < 2e-3
             );
         }
-        assert!(!found.cut_by_window && NormalGap::new(&placement).angles(found.xi) == [0.0; 2]);
+        assert!(!found.cut_by_window && NormalGap::new(&placement).angles(found.xi) == Interval::of(0.0));
     }
 }
 
@@ -250,10 +251,10 @@ fn on_a_flat_rail_the_conformal_patch_is_the_patch() {
 fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
     let placement = arcs(13.0, 13.5, 460.0, 0.0);
     let (gap, delta) = (NormalGap::new(&placement), 0.08);
-    let window = Window { xi: [-11.0, 11.0], eta: [-14.0, 14.0] };
+    let window = Window { xi: Interval::symmetric(11.0), eta: Interval::symmetric(14.0) };
     let patch = Patch::over_rail(&placement, delta, &window);
     let [part] = &patch.components[..] else { panic!("{patch:?}") };
-    for tip in part.xi {
+    for tip in part.xi.ends() {
         assert!((gap.gap(tip, 0.0) - delta * gap.angle(tip).cos()).abs() < 1e-14);
     }
     let angle = gap.angles(part.xi);
@@ -274,7 +275,7 @@ fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
     let wider = Patch::over_rail(&placement, 0.1, &window);
     assert!(wider.area() > patch.area() && wider.components[0].xi[1] > part.xi[1]);
     // A window that is too small cuts the patch.
-    let small = Window { xi: [-11.0, 2.0], eta: [-14.0, 14.0] };
+    let small = Window { xi: Interval::new(-11.0, 2.0), eta: Interval::symmetric(14.0) };
     assert!(Patch::over_rail(&placement, delta, &small).components[0].cut_by_window);
 }
 

@@ -11,9 +11,10 @@ use fill::Filled;
 use oracle::{Line, Revolved};
 use placements::{KINDS, Placed, Stock};
 use rayon::prelude::*;
+use wheelrail::Interval;
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION};
-use wheelrail::{Patch, Window};
+use wheelrail::{Component, Patch, Window};
 use wheelrail_report::random::Random;
 
 /// Seeds of every kind of pair in one ordinary test run.
@@ -54,7 +55,7 @@ impl Tally {
     fn of(placed: &Placed, dice: &mut Random) -> Self {
         let gap = NormalGap::new(&placed.placement);
         let wheel = Revolved::new(&placed.placement);
-        let [low, high] = gap.rail().reach().expect("a rail's surface at C");
+        let [low, high] = gap.rail().reach().expect("a rail's surface at C").ends();
         // Half the columns are near C, where patches are.
         let mut sigma: Vec<f64> = (0..COLUMNS)
             .map(|k| if k % 2 == 0 { [low, high] } else { [low.max(-12.0), high.min(12.0)] })
@@ -142,17 +143,17 @@ impl Compared {
     fn of(placed: &Placed, dice: &mut Random) -> Self {
         let gap = NormalGap::new(&placed.placement);
         let approach = 10f64.powf(dice.between(-2.0, -0.7));
-        let [low, high] = gap.rail().reach().expect("a rail's surface at C");
-        let window = Window { xi: [low.max(-15.0), high.min(15.0)], eta: [-14.0, 14.0] };
+        let reach = gap.rail().reach().expect("a rail's surface at C");
+        let window = Window { xi: reach.cut(Interval::symmetric(15.0)), eta: Interval::symmetric(14.0) };
         let patch = Patch::over_rail(&placed.placement, approach, &window);
         let coarse = Filled::new(&gap, approach, &window, CELLS);
         // The fine grid is laid around what either finds.
-        let found: Vec<Window> =
-            patch.components.iter().map(|part| Window { xi: part.xi, eta: part.eta }).collect();
-        let around = coarse.parts().into_iter().chain(found.iter().copied()).reduce(joined).unwrap_or(window);
+        let found: Vec<Window> = patch.components.iter().map(Component::extent).collect();
+        let around =
+            coarse.parts().into_iter().chain(found.iter().copied()).reduce(Window::hull).unwrap_or(window);
         let box_of_fill = wider(&around, &window);
         let fine = Filled::new(&gap, approach, &box_of_fill, CELLS);
-        let cell = [box_of_fill.xi, box_of_fill.eta].map(|[low, high]| (high - low) / CELLS as f64);
+        let cell = [box_of_fill.xi, box_of_fill.eta].map(|side| side.width() / CELLS as f64);
         let name = format!("{}, δ = {approach}", placed.name);
         Self { name, areas: [patch.area(), fine.area()], parts: [found, fine.parts()], cell }
     }
@@ -163,7 +164,7 @@ impl Compared {
         let area = (self.areas[0] / self.areas[1] - 1.0).abs();
         let near = |a: &Window, b: &Window| {
             [(a.xi, b.xi), (a.eta, b.eta)].iter().zip(self.cell).all(|((a, b), cell)| {
-                let size = (a[1] - a[0]).max(b[1] - b[0]);
+                let size = a.width().max(b.width());
                 (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= (EXTENT * size).max(cell)
             })
         };
@@ -174,18 +175,9 @@ impl Compared {
     }
 }
 
-/// The box around two boxes.
-fn joined(a: Window, b: Window) -> Window {
-    let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    Window { xi: join(a.xi, b.xi), eta: join(a.eta, b.eta) }
-}
-
 /// A box with a margin, inside another one.
 fn wider(a: &Window, inside: &Window) -> Window {
-    let more = |[a, b]: [f64; 2], [low, high]: [f64; 2]| {
-        let margin = 0.04 * (b - a);
-        [(a - margin).max(low), (b + margin).min(high)]
-    };
+    let more = |side: Interval, most: Interval| side.grown(0.04 * side.width()).cut(most);
     Window { xi: more(a.xi, inside.xi), eta: more(a.eta, inside.eta) }
 }
 

@@ -3,6 +3,7 @@
 
 use crate::in_time::InTime;
 use rayon::prelude::*;
+use wheelrail::Interval;
 use wheelrail::case::contacts;
 use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Patch, Window};
@@ -77,14 +78,16 @@ impl Case {
         // As wide as a patch of the usual curvatures, and some that cut it.
         let size = approach.sqrt() * *dice.pick(&[15.0, 40.0, 60.0]);
         let mut end = |sign: f64| sign * size * dice.between(0.3, 1.0);
-        let window = Window { xi: [end(-1.0), end(1.0)], eta: [end(-1.0), end(1.0)] };
+        let window =
+            Window { xi: Interval::new(end(-1.0), end(1.0)), eta: Interval::new(end(-1.0), end(1.0)) };
         Some(Self { name, placement, approach, window, method: Method::Spectral })
     }
 
     /// s − δ over a grid of n × n points, and its axes; infinite where a body has no surface.
     pub fn filled(&self, window: &Window, n: usize) -> Filled {
-        let axis = |[a, b]: [f64; 2]| -> Vec<f64> {
-            (0..n).map(|k| if k + 1 == n { b } else { a + (b - a) * k as f64 / (n - 1) as f64 }).collect()
+        let axis = |side: Interval| -> Vec<f64> {
+            let at = |k: usize| side.low + side.width() * k as f64 / (n - 1) as f64;
+            (0..n).map(|k| if k + 1 == n { side.high } else { at(k) }).collect()
         };
         let (xi, eta) = (axis(window.xi), axis(window.eta));
         let depth = self.depths(&xi, &eta);
@@ -99,13 +102,13 @@ impl Case {
         choice.fill(&self.placement, xi, &EtaAxis::new(eta), &mut s);
         // Without skew the patch is that over the midplane.
         let over = if self.placement.skew() == 0.0 {
-            self.placement.overlap().unwrap_or([0.0; 2])
+            self.placement.overlap().unwrap_or(Interval::of(0.0))
         } else {
-            [f64::MIN, f64::MAX]
+            Interval::ALL
         };
         let n = eta.len();
         s.iter_mut().enumerate().for_each(|(k, s)| {
-            let seen = over[0] <= xi[k / n] && xi[k / n] <= over[1];
+            let seen = over.contains(xi[k / n]);
             *s = if s.is_nan() || !seen { f64::INFINITY } else { *s - self.approach };
         });
         s
@@ -114,20 +117,16 @@ impl Case {
     /// Fills of a box around every component of the patch, and of one around the points inside that are in none of these, `finer` times
     /// as fine as the finest of the window; with the change of their area from grids half as fine.
     fn closer(&self, filled: &Filled, patch: &Patch, finer: usize) -> (Vec<Filled>, f64) {
-        let wider = |[a, b]: [f64; 2], [from, to]: [f64; 2]| {
-            let more = 0.25 * (b - a);
-            [(a - more).max(from), (b + more).min(to)]
-        };
+        let wider = |side: Interval, most: Interval| side.grown(0.25 * side.width()).cut(most);
         let around =
             |c: &Component| Window { xi: wider(c.xi, self.window.xi), eta: wider(c.eta, self.window.eta) };
         let mut boxes: Vec<Window> = patch.components.iter().map(around).collect();
         let own = boxes.clone();
-        let outside = |xi: f64, eta: f64| !own.iter().any(|window| holds(window, xi, eta));
+        let outside = |xi: f64, eta: f64| !own.iter().any(|window| window.contains(xi, eta));
         boxes.extend(filled.inside(&self.window, outside));
         while let Some((p, q)) = overlapping(&boxes) {
             let other = boxes.swap_remove(q);
-            let join = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
-            boxes[p] = Window { xi: join(boxes[p].xi, other.xi), eta: join(boxes[p].eta, other.eta) };
+            boxes[p] = boxes[p].hull(other);
         }
         let [coarse, fine] = [1, 2].map(|n| -> Vec<Filled> {
             boxes.iter().map(|box_of| self.filled(box_of, n * finer * POINTS[1] / 2)).collect()
@@ -141,16 +140,10 @@ fn area_of(fills: &[Filled]) -> f64 {
     fills.iter().map(Filled::area).sum()
 }
 
-fn holds(window: &Window, xi: f64, eta: f64) -> bool {
-    let inside = |[a, b]: [f64; 2], x: f64| a <= x && x <= b;
-    inside(window.xi, xi) && inside(window.eta, eta)
-}
-
 /// Two boxes with points in common; the second has the larger index.
 fn overlapping(boxes: &[Window]) -> Option<(usize, usize)> {
-    let meet = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a <= d && c <= b;
     let pairs = (1..boxes.len()).flat_map(|q| (0..q).map(move |p| (p, q)));
-    pairs.into_iter().find(|&(p, q)| meet(boxes[p].xi, boxes[q].xi) && meet(boxes[p].eta, boxes[q].eta))
+    pairs.into_iter().find(|&(p, q)| boxes[p].meets(&boxes[q]))
 }
 
 /// s − δ over a grid.
@@ -196,11 +189,11 @@ impl Filled {
         let m = self.eta.len();
         let inside = |k: &usize| self.depth[*k] < 0.0 && region(self.xi[k / m], self.eta[k % m]);
         let points: Vec<usize> = (0..self.depth.len()).filter(inside).collect();
-        let around = |axis: &[f64], index: &dyn Fn(usize) -> usize, [a, b]: [f64; 2]| {
+        let around = |axis: &[f64], index: &dyn Fn(usize) -> usize, most: Interval| {
             let at = points.iter().map(|k| index(*k));
             let [first, last] = at.fold([usize::MAX, 0], |[p, q], k| [p.min(k), q.max(k)]);
             let more = 2.0 * (axis[1] - axis[0]) + 0.25 * (axis[last] - axis[first]);
-            [(axis[first] - more).max(a), (axis[last] + more).min(b)]
+            Interval::new(axis[first], axis[last]).grown(more).cut(most)
         };
         (!points.is_empty()).then(|| Window {
             xi: around(&self.xi, &|k| k / m, window.xi),
@@ -258,10 +251,10 @@ fn check_points(case: &Case, patch: &Patch, filled: &Filled) {
         let slices = patch.slices(xi);
         for (j, &eta) in filled.eta.iter().enumerate() {
             let depth = filled.at(i, j);
-            let found = slices.iter().any(|(_, slice)| slice.eta[0] <= eta && eta <= slice.eta[1]);
+            let found = slices.iter().any(|(_, slice)| slice.eta.contains(eta));
             let sure = depth.abs() > DOUBTFUL && depth.is_finite();
             // Where a body ends a point may round off it.
-            let beside = |slice: &[f64; 2]| slice.iter().any(|edge| (edge - eta).abs() < 1e-6);
+            let beside = |slice: &Interval| slice.ends().iter().any(|edge| (edge - eta).abs() < 1e-6);
             assert!(
                 found == (depth < 0.0) || !sure || slices.iter().any(|(_, slice)| beside(&slice.eta)),
                 "{}: s − δ = {depth:e} at ({xi}, {eta}), {slices:?}",

@@ -1,6 +1,7 @@
 //! The parry3d check agrees on every scene it should agree on, and on no mutation.
 
 use crate::common::{Reference, ReferenceSegment, references};
+use wheelrail::Interval;
 use wheelrail::nalgebra::{Unit, Vector3};
 use wheelrail::patch::Window;
 use wheelrail::placement::{Pair, Placement};
@@ -159,7 +160,7 @@ fn arc(radius: f64, half: f64) -> Profile {
 }
 
 fn window(xi: [f64; 2], eta: [f64; 2], approach: f64) -> Request {
-    Request { window: Window { xi, eta }, approach }
+    Request { window: Window { xi: xi.into(), eta: eta.into() }, approach }
 }
 
 fn as_placed(placement: &Placement, request: &Request) -> Report {
@@ -226,11 +227,11 @@ fn a_far_value_of_the_grid_costs_nothing() {
     let placement =
         Pair::new(rail, wheel, 460.0).and_then(|pair| pair.placed(0.0, 0.0, 0.0)).expect("a pair");
     for far in [270.0, 270_185.0, 1e9] {
-        let window = Window { xi: [-far, 9.0], eta: [-0.8, 0.8] };
+        let window = Window { xi: Interval::new(-far, 9.0), eta: Interval::symmetric(0.8) };
         let report = checked(&placement, &placement, &Request { window, approach: 0.05 }, |_, _, _| {});
         assert!(report.agrees, "{far}\n{report}");
     }
-    let window = Window { xi: [-9.0, f64::INFINITY], eta: [-0.8, 0.8] };
+    let window = Window { xi: Interval::new(-9.0, f64::INFINITY), eta: Interval::symmetric(0.8) };
     let mut evaluator = Evaluator::new(&placement);
     let mut answer = |xi: f64, eta: f64| Answer::of(&mut evaluator, xi, eta);
     assert!(check(&placement, &Request { window, approach: 0.05 }, &mut answer).is_err());
@@ -245,7 +246,7 @@ fn bodies_too_large_for_a_mesh_are_refused() {
     };
     let pair = Pair::new(arc(1e9, 1e8), arc(1e10, 1e8), 1e9).expect("a pair");
     let placement = pair.placed(0.0, 0.0, 0.0).expect("a placed pair");
-    let window = Window { xi: [-1e8, 1e8], eta: [-1e8, 1e8] };
+    let window = Window { xi: Interval::symmetric(1e8), eta: Interval::symmetric(1e8) };
     let mut evaluator = Evaluator::new(&placement);
     let mut answer = |xi: f64, eta: f64| Answer::of(&mut evaluator, xi, eta);
     let refused = check(&placement, &Request { window, approach: 0.05 }, &mut answer);

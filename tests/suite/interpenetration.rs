@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::common::{approached_references, profile, references, two_crowns};
+use wheelrail::Interval;
 use wheelrail::Result;
 use wheelrail::internal::bracketed;
 use wheelrail::patch::{Component, End, Patch, Slicer, Window};
@@ -41,8 +42,7 @@ fn cases() -> Vec<(String, Placement, f64)> {
 /// converges spectrally for a smooth loop.
 fn area_by_rows(placement: &Placement, approach: f64, component: &Component, rows: usize) -> f64 {
     let mut evaluator = Evaluator::new(placement);
-    let [low, high] = component.eta;
-    let (centre, half) = ((low + high) / 2.0, (high - low) / 2.0);
+    let (centre, half) = (component.eta.middle(), component.eta.width() / 2.0);
     let steps = 400;
     let mut sum = 0.0;
     for row in 0..rows {
@@ -50,8 +50,7 @@ fn area_by_rows(placement: &Placement, approach: f64, component: &Component, row
         let eta = centre + half * phi.sin();
         let at = |k: usize| {
             let psi = PI * (k as f64 / steps as f64 - 0.5);
-            let [a, b] = component.xi;
-            ((a + b) / 2.0 + (b - a) / 2.0 * psi.sin()).clamp(a, b)
+            component.xi.nearest(component.xi.middle() + component.xi.width() / 2.0 * psi.sin())
         };
         let mut length = 0.0;
         for k in 0..steps {
@@ -165,9 +164,9 @@ fn loops_run_counter_clockwise_along_s_equal_delta() {
             assert!((enclosed / c.area - 1.0).abs() < 1e-3, "{name}: {enclosed} of {}", c.area);
             let twins = c.boundary.iter().zip(c.boundary.iter().cycle().skip(1)).filter(|(p, q)| p == q);
             assert_eq!(twins.count(), 0, "{name}: repeated points");
-            let [a, b] = c.xi;
+            let [a, b] = c.xi.ends();
             for &[xi, eta] in &c.boundary {
-                assert!(xi >= a && xi <= b && eta >= c.eta[0] && eta <= c.eta[1], "{name}: ({xi}, {eta})");
+                assert!(c.extent().contains(xi, eta), "{name}: ({xi}, {eta})");
                 // Closed by a body's end or step: s < δ, and just outside there is no surface, or s has jumped.
                 let centre = centre_at(c, xi);
                 let beyond = evaluator.separation(xi, centre + (eta - centre) * (1.0 + 1e-9));
@@ -223,7 +222,7 @@ fn a_larger_approach_contains_the_smaller_patch() {
         for &[xi, eta] in small.components.iter().flat_map(|c| &c.boundary) {
             let wide = slicer.slice(xi).map(|s| s.eta);
             assert!(
-                wide.is_some_and(|[a, b]| a - SAME_END <= eta && eta <= b + SAME_END),
+                wide.is_some_and(|wide| wide.grown(SAME_END).contains(eta)),
                 "{name}: ({xi}, {eta}) outside {wide:?}"
             );
             let of = large.components.iter().filter(|c| c.xi[0] <= xi && xi <= c.xi[1]).count();
@@ -307,7 +306,9 @@ fn windows_cut_and_say_so() -> Result<()> {
         let placement = crossed(skew)?;
         let whole = Patch::new(&placement, delta, &Window::UNBOUNDED);
         let [a, b] = [whole.components[0].xi[1], whole.components[0].eta[1]];
-        let parts = |xi: [f64; 2], eta: [f64; 2]| Patch::new(&placement, delta, &Window { xi, eta });
+        let parts = |xi: [f64; 2], eta: [f64; 2]| {
+            Patch::new(&placement, delta, &Window { xi: xi.into(), eta: eta.into() })
+        };
         let infinity = f64::INFINITY;
         let left = parts([-infinity, 1.0], [-infinity, infinity]);
         let right = parts([1.0, infinity], [-infinity, infinity]);
@@ -325,7 +326,7 @@ fn windows_cut_and_say_so() -> Result<()> {
             );
             for patch in [&low, &high] {
                 let [c] = patch.components.as_slice() else { panic!("{}", patch.components.len()) };
-                assert!(c.cut_by_window && c.eta.contains(&cut), "{:?} {cut}", c.eta);
+                assert!(c.cut_by_window && c.eta.ends().contains(&cut), "{:?} {cut}", c.eta);
                 assert!((shoelace(&c.boundary) / c.area - 1.0).abs() < 1e-2, "χ = {skew} η = {cut}");
                 let extent = patch.extent().expect("an extent");
                 assert_eq!((extent.xi, extent.eta), (c.xi, c.eta));
@@ -343,7 +344,11 @@ fn windows_cut_and_say_so() -> Result<()> {
 #[test]
 fn pointed_parts_beyond_a_window_edge_end_at_the_window() -> Result<()> {
     // Only the cap η > 4 of the ellipse is seen: its ends are corners with the window, not tips.
-    let patch = Patch::new(&crossed(0.0)?, 0.05, &Window { xi: [-9.0, 9.0], eta: [4.0, 9.0] });
+    let patch = Patch::new(
+        &crossed(0.0)?,
+        0.05,
+        &Window { xi: Interval::symmetric(9.0), eta: Interval::new(4.0, 9.0) },
+    );
     let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
     assert_eq!(c.ends, [End::Window; 2]);
     assert!(c.boundary.iter().all(|p| p[1] >= 4.0));

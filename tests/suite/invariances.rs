@@ -5,6 +5,7 @@
 
 use crate::common::holds;
 use proptest::prelude::*;
+use wheelrail::Interval;
 use wheelrail::load::feasibility;
 use wheelrail::nalgebra::UnitComplex;
 use wheelrail::patch::{Patch, Slicer, Window};
@@ -196,8 +197,7 @@ fn cubic(at: Station, [a, b]: [f64; 2], to_x: f64) -> Option<Shape> {
         b,
     ];
     let polynomial = Polynomial::graph(&c, [x, to_x]).ok()?;
-    let [t0, t1] = polynomial.range();
-    let flat = (0..=8).all(|k| polynomial.station(t0 + (t1 - t0) * f64::from(k) / 8.0).cos > 0.3);
+    let flat = (0..=8).all(|k| polynomial.station(polynomial.range().at(f64::from(k) / 8.0)).cos > 0.3);
     // A span of a nm holds a polynomial that has lost its digits: a drawing has no such thing.
     (flat && to_x - x > 1e-5 * x.abs()).then_some(Shape::Polynomial(polynomial))
 }
@@ -283,8 +283,8 @@ fn compare(
 
 /// Whether ξ is within rounding of where the overlap of the bodies ends.
 fn near_end(placement: &Placement, xi: f64) -> bool {
-    let ends = placement.overlap().unwrap_or([f64::NAN; 2]);
-    ends.iter().any(|end| (xi - end).abs() < 1e-6) || xi.abs() > REACH[0] - 1.0
+    let ends = placement.overlap().map(Interval::ends);
+    ends.iter().flatten().any(|end| (xi - end).abs() < 1e-6) || xi.abs() > REACH[0] - 1.0
 }
 
 // ------------------------------------------------------------------------------------------------ properties
@@ -357,7 +357,8 @@ fn scaling_keeps_the_bits_of_the_patch() {
         let scale = 4f64.powi(power);
         let (one, other) = (case.placement(1.0, 0.0), case.placement(scale, 0.0));
         let patch = |placement: &Placement, scale: f64| {
-            let window = Window { xi: [-20.0 * scale, 20.0 * scale], eta: [-15.0 * scale, 15.0 * scale] };
+            let window =
+                Window { xi: Interval::symmetric(20.0 * scale), eta: Interval::symmetric(15.0 * scale) };
             Patch::new(placement, approach * scale, &window)
         };
         let (a, b) = (patch(&one, 1.0), patch(&other, scale));

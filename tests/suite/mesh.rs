@@ -1,6 +1,7 @@
 //! Solver meshes: grids that never cut the patch, strips whose exact areas sum up, surfaces within their tolerance.
 
 use crate::common::{approached_references, two_crowns};
+use wheelrail::Interval;
 use wheelrail::Result;
 use wheelrail::mesh::{self, Axes, GridGroup, Quality, StripCounts, StripMesh, Surface};
 use wheelrail::nalgebra::Point3;
@@ -140,13 +141,13 @@ fn boundary_cells_include_the_curved_edge() -> Result<()> {
 #[test]
 fn windows_cut_the_mesh_too() {
     let (_, placement, delta) = cases().swap_remove(0);
-    for eta in [[-1.0, 2.0], [0.5, 20.0]] {
-        let patch = Patch::new(&placement, delta, &Window { xi: [-4.0, 30.0], eta });
+    for eta in [Interval::new(-1.0, 2.0), Interval::new(0.5, 20.0)] {
+        let patch = Patch::new(&placement, delta, &Window { xi: Interval::new(-4.0, 30.0), eta });
         let mesh = StripMesh::new(&placement, &patch, StripCounts::default()).expect("a mesh");
         let sum: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
         assert!((sum / patch.area() - 1.0).abs() < 1e-10);
         assert_eq!(Quality::of_strips(&mesh).map(|q| q.inverted), Some(0));
-        assert!(mesh.points.iter().all(|p| p[0] >= -4.0 && p[1] >= eta[0] && p[1] <= eta[1]));
+        assert!(mesh.points.iter().all(|p| p[0] >= -4.0 && eta.contains(p[1])));
     }
     let empty =
         StripMesh::new(&placement, &whole(&placement, 0.0), StripCounts::default()).expect("no cells");
@@ -170,12 +171,12 @@ fn covers(placement: &Placement, delta: f64, group: &GridGroup, axes: &Axes) -> 
         for (j, &y) in eta.iter().enumerate() {
             if i < 2 || j < 2 || i + 2 >= n || j + 2 >= m {
                 let s = evaluator.separation(x, y);
-                empty &= s.is_nan() || s > delta || group.extent.xi[0] > x || group.extent.xi[1] < x;
+                empty &= s.is_nan() || s > delta || !group.extent.xi.contains(x);
             }
         }
     }
     let (box_, window) = (&group.extent, axes.window());
-    let inside = |inner: [f64; 2], outer: [f64; 2]| outer[0] < inner[0] && inner[1] < outer[1];
+    let inside = |inner: Interval, outer: Interval| outer.low < inner.low && inner.high < outer.high;
     empty && inside(box_.xi, window.xi) && inside(box_.eta, window.eta)
 }
 
@@ -249,7 +250,7 @@ fn departures(placement: &Placement, surface: &Surface) -> [f64; 2] {
 
 #[test]
 fn surfaces_keep_their_tolerance_and_hold_c() {
-    let window = Window { xi: [-3.0, 2.5], eta: [-8.0, 9.0] };
+    let window = Window { xi: Interval::new(-3.0, 2.5), eta: Interval::new(-8.0, 9.0) };
     for (name, placement, _) in cases() {
         for tolerance in [1e-2, 1e-4] {
             for surface in [
@@ -273,7 +274,7 @@ fn surfaces_keep_their_tolerance_and_hold_c() {
 
 #[test]
 fn surfaces_face_outwards_and_move_into_rail_axes() {
-    let window = Window { xi: [-3.0, 2.5], eta: [-8.0, 9.0] };
+    let window = Window { xi: Interval::new(-3.0, 2.5), eta: Interval::new(-8.0, 9.0) };
     for (name, placement, _) in cases() {
         let rail = Surface::rail(&placement, &window, 1e-3).expect("a rail");
         let wheel = Surface::wheel(&placement, &window, 1e-3).expect("a wheel");
@@ -299,11 +300,11 @@ fn surfaces_face_outwards_and_move_into_rail_axes() {
 #[test]
 fn bad_requests_for_surfaces_are_refused() {
     let placement = two_crowns(-1e-3, 0.0).expect("a placement");
-    let good = Window { xi: [-3.0, 3.0], eta: [-3.0, 3.0] };
+    let good = Window { xi: Interval::symmetric(3.0), eta: Interval::symmetric(3.0) };
     for (window, tolerance) in [
         (Window::UNBOUNDED, 1e-3),
-        (Window { eta: [-500.0, 500.0], ..good }, 1e-3),
-        (Window { xi: [3.0, -3.0], ..good }, 1e-3),
+        (Window { eta: Interval::symmetric(500.0), ..good }, 1e-3),
+        (Window { xi: Interval::new(3.0, -3.0), ..good }, 1e-3),
         (good, 0.0),
         (good, f64::NAN),
         (good, 1e-18),

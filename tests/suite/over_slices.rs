@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::Value;
+use wheelrail::Interval;
 use wheelrail::case::{ALONG, MarchCase, MarchCourse, Part, Run, SILENT};
 use wheelrail::error::Result;
 use wheelrail::lofted::{Joining, Loft, LoftedBody};
@@ -160,7 +161,7 @@ fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()
             assert!((cell.separation - own.separation(xi, eta)).abs() < 1e-10, "{pose:?} {cell:?}");
         }
         for (found, expected) in found.components.iter().zip(&expected.components) {
-            let off = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+            let off = |a: Interval, b: Interval| (a.low - b.low).abs().max((a.high - b.high).abs());
             assert!(off(found.xi, expected.xi) < 1e-6 && off(found.eta, expected.eta) < 1e-3, "{pose:?}");
             assert!((found.perimeter / expected.perimeter - 1.0).abs() < 1e-6, "{pose:?}");
             assert!((found.deepest[0] - expected.deepest[0]).abs() < 1e-9, "{pose:?}");

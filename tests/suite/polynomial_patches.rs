@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::campaign;
 use crate::common::folder;
 use crate::flood_fill::{Case, Open, check, check_all};
+use wheelrail::Interval;
 use wheelrail::case::{Run, SILENT, contacts};
 use wheelrail::load::feasibility;
 use wheelrail::patch::{Patch, Window};
@@ -102,7 +103,7 @@ fn case(number: u64) -> Option<Case> {
     let long = 2.5 * (2.0 * placement.rolling_radius() * (approach + bend)).sqrt();
     let mut ends = |wide: f64, cut: f64| {
         let share = *dice.pick(&[1.0, 1.0, cut]);
-        [-wide * share, wide * dice.between(share, 1.0)]
+        Interval::new(-wide * share, wide * dice.between(share, 1.0))
     };
     let window = Window { xi: ends(1.5 * half, 0.3), eta: ends(long, 0.2) };
     Some(Case {
@@ -120,8 +121,8 @@ fn check_feasibility(case: &Case) {
     let reach = [case.placement.rail(), case.placement.wheel()].map(|body| body.section().reach());
     let [Some(rail), Some(wheel)] = reach else { return };
     let wide = 0.6 * case.placement.rolling_radius();
-    let xi = [rail[0].max(wheel[0] - 30.0), rail[1].min(wheel[1] + 30.0)];
-    let filled = case.filled(&Window { xi, eta: [-wide.min(60.0), wide.min(60.0)] }, POINTS);
+    let xi = rail.cut(wheel.grown(30.0));
+    let filled = case.filled(&Window { xi, eta: Interval::symmetric(wide.min(60.0)) }, POINTS);
     let least = filled.depth.iter().fold(f64::INFINITY, |least, depth| depth.min(least)) + case.approach;
     if least.is_infinite() {
         return;
@@ -160,7 +161,7 @@ fn scene_cases(name: &str) -> Vec<Case> {
     let resolved = scene::resolve(&scene, Path::new("."), name).expect("a case");
     let approach = scene.patch.as_ref().and_then(|patch| patch.approach).expect("an approach");
     let case = |placement: Placement| {
-        let window = Window { xi: [-40.0, 40.0], eta: [-30.0, 30.0] };
+        let window = Window { xi: Interval::symmetric(40.0), eta: Interval::symmetric(30.0) };
         Case { name: name.into(), placement, approach, window, method: Method::Pointwise }
     };
     contacts(&resolved).expect("contacts").into_iter().map(|(_, placement)| case(placement)).collect()

@@ -80,7 +80,7 @@ fn yawed_boundaries_have_both_roots() {
                 assert!(roots.is_empty() && slice.is_none(), "{name}: ξ = {xi}, δ = {delta}: {slice:?}");
                 continue;
             };
-            let found = slice.map_or([f64::NAN; 2], |slice| slice.eta);
+            let found = slice.map_or([f64::NAN; 2], |slice| slice.eta.ends());
             // |Δη| ≤ the bound on s over the slope ∂s/∂η, about (η − η of the lowest point)/R.
             let bound = if over_contact(&placement, *xi, high) { RELATIVE * delta } else { ABSOLUTE };
             let slope = (high - low) / 2.0 / yawed.reference.scene.wheel_radius;

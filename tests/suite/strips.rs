@@ -1,5 +1,6 @@
 //! Whole grids against points one by one, on every built-in pair: strips, joints on columns, masks, estimate.
 
+use wheelrail::Interval;
 use wheelrail::placement::Placement;
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
 use wheelrail_report::verification::built_in_pairs;
@@ -19,7 +20,8 @@ fn steps(a: f64, b: f64, n: usize) -> Vec<f64> {
 fn difference(placement: &Placement, [half, reach]: [f64; 2], points: usize) -> (f64, f64) {
     let mut xi = steps(-0.9 * half, 1.1 * half, COLUMNS);
     let sections = [placement.rail().section(), placement.wheel().section()];
-    let joints = sections.into_iter().flat_map(|section| section.joints([-half, half])).map(|(xi, _)| xi);
+    let joints =
+        sections.into_iter().flat_map(|section| section.joints(Interval::symmetric(half))).map(|(xi, _)| xi);
     xi.extend(joints.filter(|xi| xi.abs() < half));
     xi.sort_by(f64::total_cmp);
     xi.dedup();

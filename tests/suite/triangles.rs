@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::campaign;
 use crate::common::{approached_references, folder, profile, two_crowns};
 use crate::in_time::InTime;
+use wheelrail::Interval;
 use wheelrail::case::{Run, SILENT, contacts};
 use wheelrail::mesh::TriangleMesh;
 use wheelrail::patch::{Patch, Window};
@@ -111,7 +112,7 @@ fn check_boundary(name: &str, placement: &Placement, mesh: &TriangleMesh, patch:
     let (mut evaluator, mut level) = (Evaluator::new(placement), 0);
     for &node in mesh.boundary.iter().flat_map(|chain| &chain.nodes) {
         let (xi, eta) = (mesh.points[node].x, mesh.points[node].y);
-        let at_window = patch.window.xi.contains(&xi) || patch.window.eta.contains(&eta);
+        let at_window = patch.window.xi.ends().contains(&xi) || patch.window.eta.ends().contains(&eta);
         let off = evaluator.separation(xi, eta) - patch.approach;
         if off.abs() <= ON_BOUNDARY {
             level += 1;
@@ -208,7 +209,7 @@ fn random_chains_keep_their_angles() {
         let delta = 10f64.powf(random.between(-3.0, 0.6));
         let width = 10f64.powf(random.between(-3.0, 1.0));
         let from = -width * random.uniform();
-        let narrow = Window { xi: [from, from + width], ..Window::UNBOUNDED };
+        let narrow = Window { xi: Interval::new(from, from + width), ..Window::UNBOUNDED };
         let window = *random.pick(&[Window::UNBOUNDED, narrow]);
         for (_, placement) in found.iter().take(1) {
             let patch = Patch::new(placement, delta, &window);
@@ -265,14 +266,15 @@ fn windows_that_cut_at_sharp_corners_keep_the_angles() {
         let placement = pair.placed(0.0, 0.0, yaw).expect("a placement");
         let delta = 10f64.powf(random.between(-4.0, -0.5));
         let patch = whole(&placement, delta);
-        let ([_, b], [_, h]) = (patch.components[0].xi, patch.components[0].eta);
+        let [b, h] = [patch.components[0].xi.high, patch.components[0].eta.high];
         let mut near_end = || 1.0 - 10f64.powf(random.between(-4.0, 0.3));
-        let (along, across) = ([near_end() * b, 2.0 * b], [near_end() * h, 2.0 * h]);
-        let wide = [-2.0 * b, 2.0 * b];
+        let (along, across) =
+            (Interval::new(near_end() * b, 2.0 * b), Interval::new(near_end() * h, 2.0 * h));
+        let wide = Interval::symmetric(2.0 * b);
         let window = *random.pick(&[
             Window { xi: wide, eta: across },
             Window { xi: wide, eta: across },
-            Window { xi: along, eta: [-2.0 * h, 2.0 * h] },
+            Window { xi: along, eta: Interval::symmetric(2.0 * h) },
             Window { xi: along, eta: across },
         ]);
         let cut = Patch::new(&placement, delta, &window);
@@ -305,10 +307,10 @@ fn windows_that_cut_at_sharp_corners_keep_the_angles() {
 fn a_part_too_narrow_for_a_mesh_is_refused() {
     let placement = two_crowns(0.0, 0.0).expect("a pair");
     for width in [1e-5, 1e-7, 1e-9, 1e-12] {
-        let window = Window { xi: [-5.0, width], eta: [-5.0, 5.0] };
+        let window = Window { xi: Interval::new(-5.0, width), eta: Interval::symmetric(5.0) };
         let wide = Patch::new(&placement, 0.05, &window);
         assert!(TriangleMesh::new(&placement, &wide, None).is_ok(), "{width}");
-        let narrow = Patch::new(&placement, 0.05, &Window { xi: [0.0, width], ..window });
+        let narrow = Patch::new(&placement, 0.05, &Window { xi: Interval::new(0.0, width), ..window });
         let Err(error) = TriangleMesh::new(&placement, &narrow, None) else { panic!("{width}: a mesh") };
         assert!(error.to_string().contains("narrow") || error.to_string().contains("rounding"), "{error}");
     }
@@ -330,8 +332,8 @@ fn random_pairs_keep_every_promise() {
         let delta = 10f64.powf(random.between(-6.0, 0.0));
         let from = random.between(-5.0, 5.0);
         let window = Window {
-            xi: [from, from + random.between(0.1, 8.0)],
-            eta: [random.between(-6.0, -0.1), random.between(0.1, 6.0)],
+            xi: Interval::new(from, from + random.between(0.1, 8.0)),
+            eta: Interval::new(random.between(-6.0, -0.1), random.between(0.1, 6.0)),
         };
         let window = if random.uniform() < 0.4 { window } else { Window::UNBOUNDED };
         let patch = Patch::new(&placement, delta, &window);
@@ -367,7 +369,7 @@ fn tiny_narrow_and_cut_patches_keep_every_promise() {
         }
     }
     let patch = whole(&round, 0.05);
-    let ([_, b], [_, h]) = (patch.components[0].xi, patch.components[0].eta);
+    let [b, h] = [patch.components[0].xi.high, patch.components[0].eta.high];
     for (xi, eta) in [
         ([0.97 * b, 2.0 * b], [-2.0 * h, 2.0 * h]),
         ([-2.0 * b, 2.0 * b], [0.999 * h, 2.0 * h]),
@@ -375,7 +377,7 @@ fn tiny_narrow_and_cut_patches_keep_every_promise() {
         ([-2.0 * b, 2.0 * b], [-0.001, 0.001]),
         ([-0.3 * b, 2.0 * b], [-0.2 * h, 0.9 * h]),
     ] {
-        let window = Window { xi, eta };
+        let window = Window { xi: Interval::from(xi), eta: Interval::from(eta) };
         let cut = Patch::new(&round, 0.05, &window);
         check(&format!("cut by {window:?}"), &round, &cut, None);
         check(&format!("cut by {window:?}, coarse"), &round, &cut, Some(20.0));

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::common::{profile, references};
+use wheelrail::Interval;
 use wheelrail::case::{Run, SILENT};
 use wheelrail::internal::bracketed;
 use wheelrail::load::feasibility;
@@ -22,26 +23,26 @@ const LINES: usize = 60;
 const MARGIN: f64 = 0.05;
 
 /// What is looked at \[mm\].
-const NEAR: Window = Window { xi: [-8.0, 8.0], eta: [-15.0, 15.0] };
+const NEAR: Window = Window { xi: Interval::symmetric(8.0), eta: Interval::symmetric(15.0) };
 
 /// No scene may take longer, on a loaded machine.
 const LONGEST: Duration = Duration::from_secs(20);
 
 /// All intervals of η in which s < δ, but for those between two of the points.
-fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, [from, to]: [f64; 2], delta: f64) -> Vec<[f64; 2]> {
+fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, over: Interval, delta: f64) -> Vec<Interval> {
     let mut inside = |eta: f64| evaluator.separation(xi, eta) < delta;
-    let eta = |k: usize| from + (to - from) * k as f64 / POINTS as f64;
-    let mut intervals: Vec<[f64; 2]> = Vec::new();
-    let mut before = inside(from);
-    intervals.extend(before.then_some([from, to]));
+    let eta = |k: usize| over.low + over.width() * k as f64 / POINTS as f64;
+    let mut intervals: Vec<Interval> = Vec::new();
+    let mut before = inside(over.low);
+    intervals.extend(before.then_some(over));
     for k in 1..=POINTS {
         let here = inside(eta(k));
         if here != before {
             let side = |eta: f64| if inside(eta) == before { -1.0 } else { 1.0 };
             let change = bracketed(side, eta(k - 1), eta(k)).expect("a change");
             match intervals.last_mut().filter(|_| before) {
-                Some(last) => last[1] = change,
-                None => intervals.push([change, to]),
+                Some(last) => last.high = change,
+                None => intervals.push(Interval { low: change, ..over }),
             }
         }
         before = here;
@@ -50,10 +51,10 @@ fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, [from, to]: [f64; 2], delta: 
 }
 
 /// The slices of all components at ξ.
-fn sliced(patch: &Patch, xi: f64) -> Vec<[f64; 2]> {
-    let mut all: Vec<[f64; 2]> = patch.slices(xi).into_iter().map(|(_, slice)| slice.eta).collect();
-    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    all.retain(|[a, b]| a < b);
+fn sliced(patch: &Patch, xi: f64) -> Vec<Interval> {
+    let mut all: Vec<Interval> = patch.slices(xi).into_iter().map(|(_, slice)| slice.eta).collect();
+    all.sort_by(|a, b| a.low.total_cmp(&b.low));
+    all.retain(|eta| eta.low < eta.high);
     all
 }
 
@@ -62,28 +63,25 @@ fn shoelace(points: &[[f64; 2]]) -> f64 {
     around.map(|(p, q)| (p[0] * q[1] - q[0] * p[1]) / 2.0).sum()
 }
 
-fn widths(intervals: &[[f64; 2]]) -> f64 {
-    intervals.iter().map(|[a, b]| b - a).sum()
+fn widths(intervals: &[Interval]) -> f64 {
+    intervals.iter().map(|eta| eta.width()).sum()
 }
 
 /// Checks a patch near C line by line, its area, loops and mesh; the patch.
 fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
     let patch = Patch::new(placement, delta, &NEAR);
     let extent = patch.extent().unwrap_or_else(|| panic!("{name}: empty"));
-    let wider = |[a, b]: [f64; 2], [from, to]: [f64; 2]| {
-        let margin = MARGIN * (b - a);
-        [(a - margin).max(from), (b + margin).min(to)]
-    };
+    let wider = |side: Interval, most: Interval| side.grown(MARGIN * side.width()).cut(most);
     let [xi, eta] = [wider(extent.xi, NEAR.xi), wider(extent.eta, NEAR.eta)];
     let mut evaluator = Evaluator::new(placement);
-    let (step, fine) = ((xi[1] - xi[0]) / LINES as f64, (eta[1] - eta[0]) / POINTS as f64);
+    let (step, fine) = (xi.width() / LINES as f64, eta.width() / POINTS as f64);
     let mut area = 0.0;
     for k in 0..LINES {
-        let xi = xi[0] + step * (k as f64 + 0.5);
+        let xi = xi.low + step * (k as f64 + 0.5);
         let [expected, found] = [scanned(&mut evaluator, xi, eta, delta), sliced(&patch, xi)];
         area += step * widths(&expected);
         // What is narrower than two points the scan may miss.
-        let all_wide = expected.iter().chain(&found).all(|[a, b]| b - a > 2.0 * fine);
+        let all_wide = expected.iter().chain(&found).all(|eta| eta.width() > 2.0 * fine);
         let allowed = if all_wide && expected.len() == found.len() { 1e-8 } else { 4.0 * fine };
         let off = (widths(&expected) - widths(&found)).abs();
         assert!(off <= allowed, "{name}: at ξ = {xi} {found:?}, not {expected:?}");
@@ -106,7 +104,7 @@ fn built_in_pairs_have_the_patch_that_the_points_have() {
     let pairs = [("60E1", "S1002"), ("56E1", "EN15302-A"), ("49E1", "APTA-120"), ("54E3", "EN15302-I")];
     for (rail, wheel) in pairs {
         let [r, w] = [standards::rail(rail), standards::wheel(wheel)].map(|p| p.expect("a profile"));
-        let [first, last] = Section::own_axes(&w, Side::Wheel).reach().expect("a profile with points");
+        let [first, last] = Section::own_axes(&w, Side::Wheel).reach().expect("a profile with points").ends();
         let pair = Pair::new(r, w, 460.0).expect("a pair");
         for yaw in [-0.1, -0.02, -0.003, 0.003, 0.02, 0.1] {
             // On the flange, in its root, on the tread, and towards the wheel's end.
@@ -240,8 +238,8 @@ fn the_least_separation_under_yaw_is_that_of_all_points() {
                 let Ok(placement) = pair.placed(rail_x, wheel_x, yaw) else { continue };
                 let found = feasibility(&placement).expect("an overlap");
                 let name = format!("{rail} at {rail_x} under {wheel} at {wheel_x}, yaw {yaw}: {found:?}");
-                let [a, b] = placement.overlap().expect("an overlap");
-                let by_grids = least_by_grids(&placement, [[a - 20.0, b + 20.0], [-150.0, 150.0]]);
+                let over = placement.overlap().expect("an overlap").grown(20.0);
+                let by_grids = least_by_grids(&placement, [over.ends(), [-150.0, 150.0]]);
                 let least = found.least_separation_mm;
                 assert!(least <= by_grids + 1e-10, "{name}, {by_grids} by grids");
                 // Where the surfaces end the grids do not hit the lowest point.

@@ -59,7 +59,7 @@ pub fn check(
 ) -> Result<Report> {
     let start = Instant::now();
     let [xi, eta] = [request.window.xi, request.window.eta];
-    let reach = [xi, eta].map(|[a, b]| a.abs().max(b.abs()));
+    let reach = [xi, eta].map(Interval::magnitude);
     let reach = reach[0].hypot(reach[1]);
     // Beyond its largest radius along η, and the profile's extent along ξ, the wheel has no surface.
     let extent = placement.wheel().profile().extent();

@@ -118,7 +118,7 @@ pub(super) fn check_lofted(
 ) -> Result<LoftedReport> {
     let start = Instant::now();
     let Request { window, .. } = request;
-    let reach = window.xi.into_iter().chain(window.eta).map(f64::abs).fold(0.0, f64::max);
+    let reach = window.xi.magnitude().max(window.eta.magnitude());
     let bad = || Error::new("check", "a window without finite points", "a finite window", "check the grid");
     let own = MeshedLoft::new(lofted, placement, request)?;
     let other = match lofted.side() {
@@ -129,7 +129,7 @@ pub(super) fn check_lofted(
     let other = other.and_then(|surface| Solid::new(surface, 2.0 * reach)).ok_or_else(bad)?;
     let (mut separation, mut normals) = (Vec::new(), Vec::new());
     let [mut no_surface, mut steep_or_end, mut surface_disputed] = [0; 3];
-    let place = |[from, to]: [f64; 2], k: usize, n: usize| from + (to - from) * k as f64 / (n - 1) as f64;
+    let place = |over: Interval, k: usize, n: usize| over.low + over.width() * k as f64 / (n - 1) as f64;
     for k in 0..GRID[0] * GRID[1] {
         let at = [place(window.xi, k / GRID[1], GRID[0]), place(window.eta, k % GRID[1], GRID[1])];
         let found = answer(at[0], at[1]);

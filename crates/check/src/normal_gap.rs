@@ -179,8 +179,8 @@ fn sharpest_radius(profile: &Profile) -> f64 {
     let curvature = |segment: &Segment| match &segment.shape {
         Shape::Arc(arc) => arc.curvature().abs(),
         Shape::Polynomial(polynomial) => {
-            let [from, to] = polynomial.range();
-            let place = |k: usize| from + (to - from) * k as f64 / (SAMPLES - 1) as f64;
+            let t = polynomial.range();
+            let place = |k: usize| t.low + t.width() * k as f64 / (SAMPLES - 1) as f64;
             (0..SAMPLES).map(|k| polynomial.curvature(place(k)).abs()).fold(0.0, f64::max)
         }
     };

@@ -41,29 +41,29 @@ pub(super) fn spread_points(
 /// Slices are enough. If the wheel is yawed, loops with their areas cost far more than the whole check.
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     let Some(overlap) = placement.overlap() else { return Vec::new() };
-    let [from, to] = Interval::from(request.window.xi).cut(overlap.into()).ends();
-    if from >= to {
+    let over = request.window.xi.cut(overlap);
+    if over.low >= over.high {
         return Vec::new();
     }
     let mut slicer = Slicer::new(placement, request.approach);
-    let deepest = turning_points(placement, from, to)
+    let deepest = turning_points(placement, over.low, over.high)
         .into_iter()
         .map(|xi| (slicer.separation(xi, 0.0), xi))
         .filter(|(s, _)| !s.is_nan())
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let mut all: Vec<[f64; 2]> = deepest.iter().map(|&(_, xi)| [xi, 0.0]).collect();
     let columns: Vec<f64> = (0..=SLICES)
-        .map(|k| from + (to - from) * k as f64 / SLICES as f64)
+        .map(|k| over.low + over.width() * k as f64 / SLICES as f64)
         .chain(deepest.map(|d| d.1))
         .collect();
     let mut depths: Vec<(f64, f64)> = columns.iter().map(|&xi| (xi, slicer.depth(xi))).collect();
     depths.sort_by(|a, b| a.0.total_cmp(&b.0));
     for pair in depths.windows(2).filter(|pair| (pair[0].1 < 0.0) != (pair[1].1 < 0.0)) {
         let tip = bracketed(|xi| slicer.depth(xi), pair[0].0, pair[1].0);
-        all.extend(tip.and_then(|xi| slicer.slice(xi).map(|slice| [xi, slice.eta[0]])));
+        all.extend(tip.and_then(|xi| slicer.slice(xi).map(|slice| [xi, slice.eta.low])));
     }
     for (xi, _) in depths.iter().filter(|(_, depth)| *depth < 0.0).step_by(SLICES / LOOP_POINTS) {
-        all.extend(slicer.slice(*xi).iter().flat_map(|slice| slice.eta.map(|eta| [*xi, eta])));
+        all.extend(slicer.slice(*xi).iter().flat_map(|slice| slice.eta.ends().map(|eta| [*xi, eta])));
     }
     all
 }

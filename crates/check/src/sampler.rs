@@ -78,10 +78,10 @@ impl SampledCurve {
     /// Sets the scale to the smaller of the parameter range and the sharpest of nine radii, in units of the
     /// parameter.
     fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
-        let [a, b] = polynomial.range();
+        let range = polynomial.range();
         for k in 0..=8 {
-            let t = a + (b - a) * f64::from(k) / 8.0;
-            let speed = self.speed(t - a);
+            let t = range.low + range.width() * f64::from(k) / 8.0;
+            let speed = self.speed(t - range.low);
             self.scale = self.scale.min((polynomial.curvature(t) * speed).abs().recip());
         }
         let half = self.length / 2.0;

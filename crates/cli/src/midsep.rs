@@ -32,5 +32,5 @@ pub(super) fn midsep(path: &Path) -> Result<Outcome> {
 
 /// Returns equal steps of ξ \[mm\] over both bodies.
 fn over(placement: &Placement) -> Vec<f64> {
-    placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, DEFAULT_ROWS))
+    placement.overlap().map_or_else(Vec::new, |over| equal_steps(over.low, over.high, DEFAULT_ROWS))
 }

@@ -354,8 +354,10 @@ impl Contact {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         scene::check_axis("xi", &xi).and_then(|()| scene::check_axis("eta", &eta)).or_raise()?;
         let placement = self.placement()?;
-        let [rail, wheel] =
-            detached(py, || Surface::around(placement, &Window { xi, eta }, approach))?.or_raise()?;
+        let [rail, wheel] = detached(py, || {
+            Surface::around(placement, &Window { xi: xi.into(), eta: eta.into() }, approach)
+        })?
+        .or_raise()?;
         let surface = |surface: &Surface| {
             let fields = PyDict::new(py);
             fields.set_item("separation", array(py, surface.separations(placement)))?;
@@ -374,7 +376,7 @@ impl Contact {
             let expected = "bodies of one profile each, which have a midplane";
             return Err(exception(Error::new("contact", varying, expected, "take `separation`")));
         }
-        let over = || placement.overlap().map_or_else(Vec::new, |[a, b]| equal_steps(a, b, 101));
+        let over = || placement.overlap().map_or_else(Vec::new, |over| equal_steps(over.low, over.high, 101));
         let xi = xi.map_or_else(|| Ok(over()), |xi| values("xi", xi))?;
         scene::check_axis("xi", &xi).or_raise()?;
         Ok(midplane_table(placement, &xi))

@@ -113,7 +113,7 @@ impl Patch {
     /// The box around the patch ((xi_min, xi_max), (eta_min, eta_max)), mm; None for an empty patch.
     #[getter]
     fn extent(&self) -> Option<((f64, f64), (f64, f64))> {
-        self.patch.extent().map(|window| (window.xi.into(), window.eta.into()))
+        self.patch.extent().map(|window| (window.xi.ends().into(), window.eta.ends().into()))
     }
 
     /// The contact that it is the patch of.
@@ -126,7 +126,7 @@ impl Patch {
     #[getter]
     fn components<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let component = |c: &wheelrail::Component| {
-            let extent: ((f64, f64), (f64, f64)) = (c.xi.into(), c.eta.into());
+            let extent: ((f64, f64), (f64, f64)) = (c.xi.ends().into(), c.eta.ends().into());
             let deepest: (f64, f64, f64) = c.deepest.into();
             let holes =
                 c.holes.iter().map(|points| arrays::points(py, points)).collect::<PyResult<Vec<_>>>()?;

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::reference::{Reference, embedded, malformed};
 use wheelrail::error::Result;
+use wheelrail::patch::Window;
 use wheelrail::placement::Placement;
 use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, Method, plan};
 
@@ -77,18 +78,9 @@ pub struct StatedPatch {
     /// Approach δ \[mm\].
     pub delta: f64,
     /// The window in which the patch is searched for.
-    pub window: StatedWindow,
+    pub window: Window,
     /// The components, by ascending ξ.
     pub components: Vec<StatedComponent>,
-}
-
-/// A rectangle of the contact frame.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct StatedWindow {
-    /// Range of ξ \[mm\].
-    pub xi: [f64; 2],
-    /// Range of η \[mm\].
-    pub eta: [f64; 2],
 }
 
 /// One component of a patch.

@@ -4,7 +4,7 @@ use super::errors::{ComparedPoint, compare, inside_contact};
 use super::hard_case::{COLUMNS, HardCase, METHODS, RelationKind, StatedComponent, StatedPatch};
 use super::reference::exact;
 use wheelrail::error::{Error, Result};
-use wheelrail::patch::{Component, End, Patch, Slicer, Window};
+use wheelrail::patch::{Component, End, Patch, Slicer};
 use wheelrail::placement::Placement;
 use wheelrail::separation::{Choice, Evaluator, Method};
 
@@ -214,7 +214,7 @@ impl Bench<'_> {
     }
 
     fn patch(&self, stated: &StatedPatch) -> Vec<HardCheck> {
-        let window = Window { xi: stated.window.xi, eta: stated.window.eta };
+        let window = stated.window;
         let patch = Patch::new(self.placement, stated.delta, &window);
         let input = format!("delta = {}, {window:?}", stated.delta);
         let (found, expected) = (patch.components.len(), stated.components.len());

@@ -203,7 +203,7 @@ impl DrawnPair {
         let missing = |what: &str| Error::new("60E1 on S1002", what, "a tread contact", "report this");
         let contact = touch.and_then(|t| t.contacts.first().copied()).ok_or_else(|| missing("no contact"))?;
         let placement = contact.placed(&pair)?;
-        let window = Window { xi: [-20.0, 20.0], eta: [-20.0, 20.0] };
+        let window = Window { xi: Interval::symmetric(20.0), eta: Interval::symmetric(20.0) };
         let patch = Patch::new(&placement, APPROACH, &window);
         let extent = patch.extent().ok_or_else(|| missing("no patch"))?;
         let pressure = pressure(&placement).ok_or_else(|| missing("no ellipse"))?;
@@ -238,7 +238,7 @@ impl DrawnPair {
 fn inside(placement: &Placement, extent: &Window) -> Vec<[f64; 3]> {
     let mut evaluator = Evaluator::new(placement);
     let steps = || (-GRID..=GRID).map(|k| f64::from(k) / f64::from(GRID));
-    let along = |share: f64, [low, high]: [f64; 2]| if share < 0.0 { -share * low } else { share * high };
+    let along = |share: f64, side: Interval| if share < 0.0 { -share * side.low } else { share * side.high };
     let mut points = Vec::new();
     for [a, b] in steps().flat_map(|a| steps().map(move |b| [a, b])) {
         let [xi, eta] = [along(a, extent.xi), along(b, extent.eta)];

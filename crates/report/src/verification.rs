@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::inclined::RADIUS;
 use super::reference::Reference;
+use wheelrail::Interval;
 use wheelrail::error::Result;
 use wheelrail::patch::Window;
 use wheelrail::placement::{Pair, Placement};
@@ -49,10 +50,12 @@ impl Subject {
     /// The errors of [`Reference::placement`].
     pub fn of_reference(reference: &Reference) -> Result<Self> {
         let [xi, eta] = reference.scene.axes();
-        let ends = |values: &[f64]| [values.first(), values.last()].map(|v| v.copied().unwrap_or(0.0));
-        let reach = ends(&eta)[1];
+        let reach = eta.last().copied().unwrap_or(0.0);
         let approach = reference.scene.delta.first().copied().unwrap_or(0.0);
-        let request = Request { window: Window { xi: ends(&xi), eta: [-reach, reach] }, approach };
+        let request = Request {
+            window: Window { xi: Interval::around(xi), eta: Interval::symmetric(reach) },
+            approach,
+        };
         Ok(Self { name: reference.name.clone(), placement: reference.placement()?, request })
     }
 
@@ -94,9 +97,10 @@ pub fn built_in_pairs() -> Result<Vec<Subject>> {
             let pair = Pair::new(standards::rail(rail)?, standards::wheel(wheel)?, RADIUS)?;
             let placement = pair.placed(0.0, 0.0, skew)?;
             let [half, reach] = HALF_WIDTHS;
-            let [from, to] = placement.rail().section().reach().unwrap_or([-half, half]);
-            let xi = [(from + EDGE).max(-half), (to - EDGE).min(half)];
-            let request = Request { window: Window { xi, eta: [-reach, reach] }, approach: APPROACH };
+            let near = Interval::symmetric(half);
+            let xi = placement.rail().section().reach().map_or(near, |rail| rail.grown(-EDGE).cut(near));
+            let window = Window { xi, eta: Interval::symmetric(reach) };
+            let request = Request { window, approach: APPROACH };
             Ok(Subject { name: format!("{rail} and {wheel}, skew {skew}"), placement, request })
         })
         .collect()

@@ -6,6 +6,7 @@ use std::hint::black_box;
 use super::inclined::inclined_pair;
 use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
+use wheelrail::Interval;
 use wheelrail::case::{Profiles, Run, SILENT};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::Format;
@@ -151,8 +152,7 @@ pub fn with_parts<T>(case: &str, side: usize, then: impl FnOnce(&mut dyn FnMut(&
     let place = || contact.placed(&pair);
     let placement: Placement = place()?;
     let [xi, eta] = HALF_WIDTHS.map(|half| equal_steps(-half, half, side));
-    let [xi_window, eta_window] = HALF_WIDTHS.map(|half| [-half, half]);
-    let window = Window { xi: xi_window, eta: eta_window };
+    let window = Window { xi: Interval::symmetric(HALF_WIDTHS[0]), eta: Interval::symmetric(HALF_WIDTHS[1]) };
     let axis = EtaAxis::new(&eta);
     let mut planned = plan(&placement, &xi, &axis, FULL_PRECISION, None);
     let mut values = Values::new(side * side);

@@ -143,7 +143,7 @@ impl CurvesPicture {
         page.heading(place, &quantity.heading());
         let values = quantity.curves.iter().flat_map(|curve| &curve.points).map(|p| p[1]);
         let shown = quantity.shown.unwrap_or_else(|| range(values));
-        let least = (1e-6 * shown.size()).max(1e-9);
+        let least = (1e-6 * shown.magnitude()).max(1e-9);
         let panel = Panel { place, u, v: airy(shown, 0.06, least) };
         panel.zero_line(page);
         // The names end where the panel does, 12 apart.

@@ -91,7 +91,7 @@ impl Panel {
     /// Draws the frame, ticks, numbers and names below and to the left.
     pub(super) fn axes(&self, page: &mut Page, names: [&str; 2]) {
         let [_, _, w, h] = self.place;
-        let powers = [self.u, self.v].map(|range| power_for(range.size()));
+        let powers = [self.u, self.v].map(|range| power_for(range.magnitude()));
         let ticks = [ticks_of(self.u, w / 45.0, powers[0]), ticks_of(self.v, h / 28.0, powers[1])];
         let [u, v] = [0, 1].map(|k| in_power(names[k], powers[k]));
         self.ticked(page, [&u, &v], ticks);

@@ -1,6 +1,7 @@
 //! Equal cells over a region of contact.
 
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 use crate::patch::Window;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -26,11 +27,11 @@ impl Cells {
     /// A window without extent; no cells, or more than four million.
     pub fn over(window: &Window, count: [usize; 2]) -> Result<Self> {
         let ranges = [window.xi, window.eta];
-        let from = ranges.map(|[from, _]| from);
-        let step = [0, 1].map(|k| (ranges[k][1] - ranges[k][0]) / count[k] as f64);
+        let from = ranges.map(|range| range.low);
+        let step = [0, 1].map(|k| ranges[k].width() / count[k] as f64);
         let cells = count[0].checked_mul(count[1]).filter(|cells| (1..=MOST_CELLS).contains(cells));
         if cells.is_none() || !step.iter().all(|step| step.is_finite() && *step > 0.0) {
-            let found = format!("{} × {} cells over {ranges:?} mm", count[0], count[1]);
+            let found = format!("{} × {} cells over {:?} mm", count[0], count[1], ranges.map(Interval::ends));
             let expected = format!("at most {MOST_CELLS} cells over a bounded window");
             return Err(Error::new("pressure", found, expected, "give other cells, or a larger approach"));
         }

@@ -43,7 +43,7 @@ impl HalfSpace {
         let found = Cells::over(extent, CELLS)
             .and_then(|cells| Self::new(cells, &cells.separations(placement), approach));
         found.unwrap_or_else(|_| {
-            let cells = Cells { from: [extent.xi[0], extent.eta[0]], step: [1.0; 2], count: CELLS };
+            let cells = Cells { from: [extent.xi.low, extent.eta.low], step: [1.0; 2], count: CELLS };
             let none = vec![0.0; CELLS[0] * CELLS[1]];
             Self { cells, depth: none.clone(), start: none }
         })
@@ -222,6 +222,7 @@ fn nearness(a: &Located, b: &Located) -> f64 {
 mod tests {
     use super::*;
     use crate::load::hertz::{Curvatures, Ellipse};
+    use crate::numerics::interval::Interval;
 
     /// E* of steel \[N/mm²\].
     const STEEL: f64 = 113_932.0;
@@ -235,7 +236,7 @@ mod tests {
     ) -> Result<(HalfSpace, Option<Ellipse>)> {
         let [xi, eta] = [(a, centre[0]), (b, centre[1])].map(|(curvature, centre)| {
             let reach = (approach / curvature).sqrt();
-            [centre - reach, centre + reach]
+            Interval::of(centre).grown(reach)
         });
         let cells = Cells::over(&Window { xi, eta }, count)?;
         let gaps = gaps(&cells, |x, y| a * (x - centre[0]).powi(2) + b * (y - centre[1]).powi(2));
@@ -313,7 +314,7 @@ mod tests {
     #[test]
     fn the_middle_of_a_long_cylinder_has_the_pressures_of_a_line() -> Result<()> {
         let (radius, half_length, width) = (10.0, 30.0, 2.0);
-        let window = Window { xi: [-half_length, half_length], eta: [-width, width] };
+        let window = Window { xi: Interval::symmetric(half_length), eta: Interval::symmetric(width) };
         let cells = Cells::over(&window, [60, 80])?;
         let region = HalfSpace::new(cells, &gaps(&cells, |_, y| y * y / (2.0 * radius)), 0.1)?;
         let found = press(&[region.alone()], 1e-4, STEEL)?.swap_remove(0);
@@ -330,7 +331,10 @@ mod tests {
     fn regions_press_upon_each_other_as_on_one_grid() -> Result<()> {
         let (a, approach) = (2e-3, [0.08, 0.05]);
         for distance in [16.0, 30.0] {
-            let cells = Cells::over(&Window { xi: [-8.0, distance + 8.0], eta: [-8.0, 8.0] }, [240, 120])?;
+            let cells = Cells::over(
+                &Window { xi: Interval::new(-8.0, distance + 8.0), eta: Interval::symmetric(8.0) },
+                [240, 120],
+            )?;
             let one = |x: f64, y: f64, lift: f64| a * (x * x + y * y) + lift;
             let both =
                 gaps(&cells, |x, y| one(x, y, 0.0).min(one(x - distance, y, approach[0] - approach[1])));
@@ -351,7 +355,8 @@ mod tests {
 
     #[test]
     fn nothing_presses_without_overlap() -> Result<()> {
-        let cells = Cells::over(&Window { xi: [0.0, 1.0], eta: [0.0, 1.0] }, [8, 8])?;
+        let cells =
+            Cells::over(&Window { xi: Interval::new(0.0, 1.0), eta: Interval::new(0.0, 1.0) }, [8, 8])?;
         let found = press(&[HalfSpace::new(cells, &[f64::NAN; 64], 0.1)?.alone()], 1e-4, STEEL)?;
         assert_eq!(
             [found[0].load(), found[0].contact_area(), found[0].largest().pressure_n_per_mm2],

@@ -114,7 +114,7 @@ fn polynomial_data(polynomial: &Polynomial) -> Result<SegmentData> {
     }
     let middle = polynomial.x[0];
     let about_zero = recentred(&polynomial.z, -middle);
-    let x = polynomial.t.map(|t| f64::from(middle + t));
+    let x = polynomial.t.ends().map(|t| f64::from(middle + t));
     let coefficients = about_zero.into_iter().map(f64::from).collect();
     Ok(SegmentData { polynomial: Some(PolynomialData { x, coefficients }), ..NOTHING })
 }

@@ -116,7 +116,7 @@ impl ValleyPath {
             let parameter = |angle: f64| range.nearest(middle + half * angle.sin());
             let run = |angle: &Lanes| angle.map(|angle| turned.run(branch, parameter(angle)));
             let mut turns = Vec::new();
-            sign_changes(run, Interval::of(0.0).grown(FRAC_PI_2), RUN_NOISE, &mut turns);
+            sign_changes(run, Interval::symmetric(FRAC_PI_2), RUN_NOISE, &mut turns);
             let abscissa = |angle: f64| branch.station_and_curvature(parameter(angle)).0.x;
             cuts.extend(turns.into_iter().map(abscissa).filter(|p| a < *p && *p < b));
             cuts.dedup();

@@ -1,6 +1,6 @@
 //! Joins the intervals of lines where a body varies to bands.
 
-use super::lines::{LineSlice, Line, TO_LOWEST, Varying, links};
+use super::lines::{Line, LineSlice, TO_LOWEST, Varying, links};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};

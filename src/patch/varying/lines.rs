@@ -151,7 +151,7 @@ impl<'a> Varying<'a> {
 
     /// Returns how far along the track the patch is looked for \[mm\].
     fn within(&self) -> Interval {
-        Interval::of(0.0).grown(self.farthest)
+        Interval::symmetric(self.farthest)
     }
 
     /// Returns s \[mm\].
@@ -178,7 +178,7 @@ impl<'a> Varying<'a> {
     /// Finds the intervals along a line between two η \[mm\].
     fn whole_line(&mut self, xi: f64, eta: Interval) -> Line {
         let mut points: Vec<[f64; 2]> = Vec::new();
-        let near = Interval::of(0.0).grown(self.step).map(|place| eta.nearest(place));
+        let near = Interval::symmetric(self.step).map(|place| eta.nearest(place));
         for eta in places(near, self.step) {
             points.push([eta, self.separation(xi, eta)]);
         }

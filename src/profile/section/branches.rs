@@ -107,8 +107,7 @@ mod tests {
         let section = Section::own_axes(profile, side);
         let (mut worst, mut compared) = (0f64, 0);
         for branch in &section.branches {
-            let [a, b] = branch.xi;
-            let at = |share: f64| a + (b - a) * share;
+            let at = |share: f64| branch.xi.at(share);
             let (xi, to) = ([at(0.1), at(0.5), at(0.9)], [at(0.3), at(0.500001), at(0.95)]);
             let Some((points, heights)) = branch.points(&xi) else { continue };
             let Some(chords) = branch.chords_from(&points, &to) else { continue };

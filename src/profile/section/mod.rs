@@ -143,9 +143,8 @@ impl Section {
 
     /// Returns whether ξ \[mm\] lies on the segment through C, at least `margin` \[mm\] inside the ends of its outer part.
     pub fn on_contact_segment(&self, xi: f64, margin: f64) -> bool {
-        self.piece_at(xi).is_some_and(|piece| {
-            self.contact == Some(piece.branch) && piece.xi.grown(-margin).contains(xi)
-        })
+        self.piece_at(xi)
+            .is_some_and(|piece| self.contact == Some(piece.branch) && piece.xi.grown(-margin).contains(xi))
     }
 
     /// Returns the ends of the envelope's pieces that touch an interval of ξ \[mm\], with their ζ \[mm\], in order of ξ. A

@@ -230,11 +230,11 @@ mod tests {
         // ξ = t³ − 3t² + 3t = 1 + (t − 1)³ is level at t = 1. ξ = t − t²/2 is vertical at its end.
         let level = [0.0, 3.0, -3.0, 1.0];
         for (c, high, xi) in [(&level[..], 2.0, 1.0 + 1e-12), (&[0.0, 1.0, -0.5][..], 1.0, 0.5 - 1e-12)] {
-            let [t] = parameters(c, repeated([0.0, high]), &[xi], [high]).unwrap();
+            let [t] = parameters(c, repeated(Interval::new(0.0, high)), &[xi], [high]).unwrap();
             assert!((values_and_slopes(c, &[t])[0][0] - xi).abs() < 1e-15, "{t}");
         }
         for (xi, end) in [(-1.0, 0.0), (9.0, 2.0)] {
-            assert_eq!(parameters(&level[..], repeated([0.0, 2.0]), &[xi], [1.0]), Some([end]));
+            assert_eq!(parameters(&level[..], repeated(Interval::new(0.0, 2.0)), &[xi], [1.0]), Some([end]));
         }
     }
 }

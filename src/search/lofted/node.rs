@@ -228,12 +228,12 @@ impl BoundPart {
     pub fn halves(&self, loft: &Loft) -> [Part; 2] {
         let Part { y, shares, node, .. } = self.part;
         if self.changes[1] > self.changes[0] {
-            return y.split(y.middle()).map(|y| Part { y, ..self.part });
+            return y.halves().map(|y| Part { y, ..self.part });
         }
         if self.part.cell(loft).is_none() {
             return [0, 1].map(|k| Part { node: 2 * node + k, ..self.part });
         }
-        shares.split(shares.middle()).map(|shares| Part { shares, ..self.part })
+        shares.halves().map(|shares| Part { shares, ..self.part })
     }
 
     /// Tells whether the gap over the part may be least there or level: whether the surfaces of both bodies may be parallel across and

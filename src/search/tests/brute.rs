@@ -46,7 +46,7 @@ impl RandomScene {
     fn lowest_gap(&self) -> [f64; 3] {
         let rail = Section::own_axes(&self.rail, Side::Rail);
         let wheel = Section::own_axes(&self.wheel, Side::Wheel);
-        let reach = Interval::from(wheel.reach().unwrap_or_default());
+        let reach = wheel.reach().unwrap_or(Interval::of(0.0));
         let gap = |x: f64, omega: f64| {
             let [px, py, pz] = self.point(&wheel, x, omega);
             let height = self.lower(rail.height(px), py);

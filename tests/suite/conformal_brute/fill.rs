@@ -1,5 +1,6 @@
 //! The conformal patch by a flood fill of a fine grid of t.
 
+use wheelrail::Interval;
 use wheelrail::Window;
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::separation::EtaAxis;
@@ -17,8 +18,9 @@ pub struct Filled {
 impl Filled {
     /// Fills n × n points of a window; infinite where t is undefined.
     pub fn new(gap: &NormalGap<'_>, approach: f64, window: &Window, n: usize) -> Self {
-        let axis = |[a, b]: [f64; 2]| -> Vec<f64> {
-            (0..n).map(|k| if k + 1 == n { b } else { a + (b - a) * k as f64 / (n - 1) as f64 }).collect()
+        let axis = |side: Interval| -> Vec<f64> {
+            let at = |k: usize| side.low + side.width() * k as f64 / (n - 1) as f64;
+            (0..n).map(|k| if k + 1 == n { side.high } else { at(k) }).collect()
         };
         let (sigma, eta) = (axis(window.xi), axis(window.eta));
         let mut depth = vec![0.0; n * n];
@@ -58,14 +60,13 @@ impl Filled {
             if known[start] || self.depth[start] >= 0.0 {
                 continue;
             }
-            let empty = [f64::INFINITY, f64::NEG_INFINITY];
-            let (mut extent, mut stack) = (Window { xi: empty, eta: empty }, vec![start]);
+            let empty = Window { xi: Interval::NONE, eta: Interval::NONE };
+            let (mut extent, mut stack) = (empty, vec![start]);
             known[start] = true;
             while let Some(k) = stack.pop() {
                 let (i, j) = (k / m, k % m);
-                let around = |[a, b]: [f64; 2], v: f64| [a.min(v), b.max(v)];
-                extent.xi = around(extent.xi, self.sigma[i]);
-                extent.eta = around(extent.eta, self.eta[j]);
+                extent.xi = extent.xi.with(self.sigma[i]);
+                extent.eta = extent.eta.with(self.eta[j]);
                 for p in i.saturating_sub(1)..(i + 2).min(n) {
                     for q in j.saturating_sub(1)..(j + 2).min(m) {
                         if !known[p * m + q] && self.depth[p * m + q] < 0.0 {

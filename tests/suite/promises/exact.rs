@@ -74,7 +74,7 @@ pub fn doubled(profile: &Profile) -> Option<(Profile, Exact)> {
                 }
                 let [x, z] =
                     p.coefficients().map(|c| c.into_iter().map(|[high, low]| Twice { high, low }).collect());
-                (segment.shape.clone(), Graph::Curve { t: p.range(), x, z })
+                (segment.shape.clone(), Graph::Curve { t: p.range().ends(), x, z })
             }
         };
         rebuilt.push(ProfileSegment { label: String::new(), shape });
@@ -85,8 +85,7 @@ pub fn doubled(profile: &Profile) -> Option<(Profile, Exact)> {
 
 /// Whether x grows along a curve, at places close enough for the cubics of a spline: one that turns back is no graph.
 fn ascends(curve: &Polynomial) -> bool {
-    let [first, last] = curve.range();
-    let stations = (0..=64).map(|k| curve.station(first + (last - first) * f64::from(k) / 64.0));
+    let stations = (0..=64).map(|k| curve.station(curve.range().at(f64::from(k) / 64.0)));
     stations.into_iter().all(|station| station.cos > 0.0)
 }
 

@@ -3,9 +3,10 @@
 
 use crate::programs::{check, check_all, folder};
 use std::path::Path;
+use wheelrail::Interval;
 use wheelrail::case::RUN_FOLDER;
 use wheelrail::export::{
-    ContactSettings, Deck, Frame, GridFields, Header, Interval, Loop, NetCdf, Nodes, PatchPicture,
+    ContactSettings, Deck, Frame, GridFields, Header, Loop, NetCdf, Nodes, PatchPicture, PatchRow,
     PicturedContact, Prescribed, QuadMesh, VIEW_SCRIPT, array_npy, boundary_csv, boundary_vtp,
     collection_pvd, conform_wrp, contact_inp, countact_wrp, interpen_csv, rail_vts, separation_vtk,
     separation_vts, separation_wrp, strips_vtu, wheel_vts,
@@ -116,7 +117,7 @@ impl Scene {
         write_decks(&folder, &header, &grid, &self.mesh());
         let loops = self.loops();
         folder.write("boundary.csv", boundary_csv(&loops).as_bytes()).unwrap();
-        let row = Interval { xi: 0.0, component: 0, eta: [-1.0, 1.0], cut: [false; 2] };
+        let row = PatchRow { xi: 0.0, component: 0, eta: Interval::symmetric(1.0), cut: [false; 2] };
         folder.write("interpen.csv", interpen_csv(&[row]).as_bytes()).unwrap();
         folder.write("boundary.vtp", &boundary_vtp(&header, &loops).unwrap()).unwrap();
         folder.write("strips.vtu", &strips_vtu(&header, &self.mesh()).unwrap()).unwrap();

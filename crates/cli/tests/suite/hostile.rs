@@ -195,13 +195,10 @@ fn attempt(text: &str, json: bool) -> Result<bool, String> {
     for part in &run.parts {
         let analysis = &part.analysis;
         let numbers = analysis.patch.iter().flat_map(|p| &p.components).flat_map(|c| {
-            c.boundary.iter().flatten().chain(&c.xi).chain(&c.eta).chain([
-                &c.area,
-                &c.perimeter,
-                &c.deepest[0],
-            ])
+            let sizes = [c.xi.low, c.xi.high, c.eta.low, c.eta.high, c.area, c.perimeter, c.deepest[0]];
+            c.boundary.iter().flatten().copied().chain(sizes)
         });
-        if let Some(bad) = numbers.copied().find(|v| !v.is_finite()) {
+        if let Some(bad) = numbers.into_iter().find(|v| !v.is_finite()) {
             return Err(format!("{bad} in the patch"));
         }
         let claimed =

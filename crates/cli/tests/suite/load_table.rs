@@ -65,8 +65,7 @@ fn solve(dir: &Path) -> Option<BTreeMap<usize, Solved>> {
 
 /// Gives the box \[mm\] around the edges of contact.
 fn extent(pressure: &PartPressure) -> Window {
-    let side =
-        |axis: usize| Interval::around(pressure.outline.iter().flatten().map(|point| point[axis])).ends();
+    let side = |axis: usize| Interval::around(pressure.outline.iter().flatten().map(|point| point[axis]));
     Window { xi: side(0), eta: side(1) }
 }
 

@@ -2,6 +2,7 @@
 
 use super::values::GapReference;
 use crate::speed::{LEAST_RUNS, Timing, race, timed};
+use wheelrail::Interval;
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::error::Result;
 use wheelrail::mesh::equal_steps;
@@ -38,12 +39,10 @@ pub fn gap_cost(reference: &GapReference, side: usize, seconds: f64) -> Result<G
     let [sigma, eta] = reference.scene.axes();
     let reach = eta.iter().fold(0.0, |most: f64, eta| most.max(eta.abs()));
     let axis = EtaAxis::new(&equal_steps(-reach, reach, side));
-    let ends = gap.rail().reach().map_or([0.0; 2], |[low, high]| {
-        [sigma.first().map_or(0.0, |&at| low.max(at)), sigma.last().map_or(0.0, |&at| high.min(at))]
-    });
-    let sigma = equal_steps(ends[0], ends[1], side);
-    let [from, to] = ends.map(|at| gap.rail().point(at).map_or(0.0, |at| at.xi));
-    let xi = equal_steps(from, to, side);
+    let over = gap.rail().reach().map_or(Interval::of(0.0), |reach| reach.cut(Interval::around(sigma)));
+    let sigma = equal_steps(over.low, over.high, side);
+    let xi = over.map(|at| gap.rail().point(at).map_or(0.0, |at| at.xi));
+    let xi = equal_steps(xi.low, xi.high, side);
     let choice = plan(&placement, &xi, &axis, FULL_PRECISION, Some(Method::Spectral)).choice;
     let mut values = Values::new(side * side);
     values.fill(0.0);

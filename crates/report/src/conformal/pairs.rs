@@ -149,8 +149,8 @@ impl GapGrid {
 /// Finds the patch over the rail of a site under its estimated approach; `None` without one.
 fn patch(site: &Site) -> Option<Patch> {
     let gap = NormalGap::new(&site.contact.placement);
-    let [sigma, eta] = plane_extents(site, &gap).map(|extent| widened(extent, SEARCHED).ends());
-    let window = Window { xi: sigma, eta };
+    let [xi, eta] = plane_extents(site, &gap).map(|extent| widened(extent, SEARCHED));
+    let window = Window { xi, eta };
     let patch = Patch::over_rail(&site.contact.placement, site.approach(), &window);
     Some(patch).filter(|patch| !patch.components.is_empty())
 }

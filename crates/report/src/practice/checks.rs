@@ -207,7 +207,7 @@ fn separations(bodies: &Bodies, placement: &Placement, window: &Window, name: &s
     let mut evaluator = Evaluator::new(placement);
     let mut compared = 0;
     for _ in 0..POINTS {
-        let [xi, eta] = [window.xi, window.eta].map(|[a, b]| random.between(a, b));
+        let [xi, eta] = [window.xi, window.eta].map(|side| random.between(side.low, side.high));
         let s = evaluator.separation(xi, eta);
         let Some(exact) = bodies.separation(placement, xi, eta).filter(|_| s.is_finite()) else { continue };
         compared += 1;

@@ -175,7 +175,7 @@ impl Movement {
         let first = ((place - (1 << depth).min(place)) * cells).min(self.cells());
         let last = (first + cells).min(self.cells());
         let energies = Interval::around(self.energy[first..=last].iter().copied());
-        let (centre, radius) = (energies.at(0.5), energies.width() / 2.0);
+        let (centre, radius) = (energies.middle(), energies.width() / 2.0);
         let mut moments = [0.0; TERMS];
         for k in first..last {
             self.add_moments(k, centre, radius, &mut moments);

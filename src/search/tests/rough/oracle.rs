@@ -183,9 +183,9 @@ impl Oracle {
     fn abscissae(&self, step: f64) -> Vec<f64> {
         let mut all: Vec<f64> = samples(&self.rail, step).iter().map(|s| s[0]).collect();
         let [offset, yaw, roll] = self.pose;
-        if let (true, Some([low, high])) = (yaw == 0.0, self.rail.reach()) {
+        if let Some(reach) = self.rail.reach().filter(|_| yaw == 0.0) {
             let placed = self.samples.iter().map(|[x, z]| offset + x * roll.cos() + z * roll.sin());
-            all.extend(placed.filter(|x| (low..=high).contains(x)));
+            all.extend(placed.filter(|x| reach.contains(*x)));
         }
         all.sort_by(f64::total_cmp);
         // Both ends of a joint differ by rounding; the gap would have a minimum between them.
@@ -254,7 +254,7 @@ fn samples(section: &Section, step: f64) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::new();
     for piece in &section.pieces {
         let branch = &section.branches[piece.branch];
-        let [a, b] = piece.xi;
+        let [a, b] = piece.xi.ends();
         let length = (b - a).hypot(piece.heights[1] - piece.heights[0]);
         let n = (length / step).ceil().clamp(4.0, 64.0);
         out.extend((0..=n as u32).map(|k| {
