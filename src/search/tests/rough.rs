@@ -6,6 +6,7 @@ mod pairs;
 
 use oracle::Oracle;
 use pairs::random_pair;
+use rayon::prelude::*;
 
 use super::*;
 
@@ -80,9 +81,10 @@ fn flatness(contact: &Contact) -> f64 {
 #[test]
 fn rough_pairs_agree_with_lowered_rings_on_every_contact_and_near_miss() -> Result<()> {
     let pairs = std::env::var("WHEELRAIL_ROUGH_PAIRS").ok().and_then(|n| n.parse().ok()).unwrap_or(PAIRS);
+    let compared: Vec<_> = (SEED..SEED + pairs).into_par_iter().map(compare).collect::<Result<_>>()?;
     let (mut touching, mut contacts, mut differ) = (0, 0, Vec::new());
-    for seed in SEED..SEED + pairs {
-        match compare(seed)? {
+    for outcome in compared {
+        match outcome {
             Ok(count) => {
                 touching += u64::from(count > 0);
                 contacts += count;

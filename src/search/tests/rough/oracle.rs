@@ -22,6 +22,8 @@ pub(super) struct Oracle {
     wheel: Section,
     radius: f64,
     pose: [f64; 3],
+    /// Sines and cosines of yaw and roll.
+    turns: [(f64, f64); 2],
     /// Samples of the wheel's profile, in order of x.
     samples: Vec<[f64; 2]>,
 }
@@ -30,8 +32,8 @@ impl Oracle {
     /// Returns the gap over the rail's abscissa X of the ring of the wheel's profile point (x, z); infinite
     /// if the ring does not reach X.
     fn gap(&self, [x, z]: [f64; 2], at: f64, rail: f64) -> f64 {
-        let [offset, yaw, roll] = self.pose;
-        let (rolling, (sy, cy), (sr, cr)) = (self.radius - z, yaw.sin_cos(), roll.sin_cos());
+        let [offset, yaw, _] = self.pose;
+        let (rolling, [(sy, cy), (sr, cr)]) = (self.radius - z, self.turns);
         // X = offset + (x cosψ − ϱ sinω sinψ) cosφ + (R − ϱ cosω) sinφ: a sinω + b cosω = c.
         let (a, b) = (-rolling * sy * cr, -rolling * sr);
         let c = at - offset - x * cy * cr - self.radius * sr;
@@ -145,16 +147,13 @@ impl Oracle {
     /// Returns the lowest gap of the rings between two abscissae of the wheel's profile, with the abscissa of
     /// the ring.
     fn ring_between(&self, at: f64, rail: f64, mut cell: Interval, zooms: u32) -> [f64; 2] {
-        let (ends, mut best) = (cell, [f64::INFINITY, cell.low]);
+        let ends = cell;
+        let ring = |x: f64| [self.gap([x, self.wheel.height(x)], at, rail), x];
+        // The ends of every narrower cell are among the rings that are known.
+        let mut best = ends.ends().map(ring).into_iter().fold([f64::INFINITY, cell.low], lower);
         for _ in 0..zooms {
             let step = cell.width() / 8.0;
-            for k in 0..=8 {
-                let x = (cell.low + step * f64::from(k)).min(cell.high);
-                let gap = self.gap([x, self.wheel.height(x)], at, rail);
-                if gap < best[0] {
-                    best = [gap, x];
-                }
-            }
+            best = (1..8).map(|k| ring(cell.low + step * f64::from(k))).fold(best, lower);
             cell = Interval::of(best[1]).grown(step).cut(ends);
         }
         best
@@ -163,7 +162,16 @@ impl Oracle {
     pub(super) fn new(pair: &Pair3, radius: f64, step: f64) -> Self {
         let wheel = Section::own_axes(&pair.wheel, Side::Wheel);
         let samples = samples(&wheel, step);
-        Self { rail: Section::own_axes(&pair.rail, Side::Rail), wheel, radius, pose: pair.pose, samples }
+        let [_, yaw, roll] = pair.pose;
+        let turns = [yaw.sin_cos(), roll.sin_cos()];
+        Self {
+            rail: Section::own_axes(&pair.rail, Side::Rail),
+            wheel,
+            radius,
+            pose: pair.pose,
+            turns,
+            samples,
+        }
     }
 
     /// Returns the samples whose rings may be lowest at X: without yaw those beside X, with yaw as far as a
@@ -229,24 +237,25 @@ impl Oracle {
 
     /// Returns the least gap between two abscissae, as \[gap, X\]; `None` if it is at one of them, unless
     /// that is an end of the rail.
-    fn zoomed(&self, cell: Interval, rail: Interval) -> Option<[f64; 2]> {
-        let Interval { low: mut a, high: mut b } = cell;
-        let mut best = [f64::INFINITY, a];
+    fn zoomed(&self, whole: Interval, rail: Interval) -> Option<[f64; 2]> {
+        let gap = |at: f64| [self.lowest(at, self.near(at), 9)[0], at];
+        // The ends of every narrower cell are among the gaps that are known.
+        let (mut cell, mut best) =
+            (whole, whole.ends().map(gap).into_iter().fold([f64::INFINITY, whole.low], lower));
         for _ in 0..17 {
-            let step = (b - a) / 6.0;
-            for k in 0..=6 {
-                let at = (a + step * f64::from(k)).min(b);
-                let [gap, _] = self.lowest(at, self.near(at), 9);
-                if gap < best[0] {
-                    best = [gap, at];
-                }
-            }
-            [a, b] = Interval::of(best[1]).grown(step).cut(cell).ends();
+            let step = cell.width() / 6.0;
+            best = (1..6).map(|k| gap(cell.low + step * f64::from(k))).fold(best, lower);
+            cell = Interval::of(best[1]).grown(step).cut(whole);
         }
-        let edge = 1e-6 * cell.width();
+        let edge = 1e-6 * whole.width();
         let inside = |end: f64, of_rail: f64| (best[1] - end).abs() > edge || end == of_rail;
-        (inside(cell.low, rail.low) && inside(cell.high, rail.high)).then_some(best)
+        (inside(whole.low, rail.low) && inside(whole.high, rail.high)).then_some(best)
     }
+}
+
+/// Returns the one of two gaps, with their places, that is lower; the first one of equal ones.
+fn lower(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    if b[0] < a[0] { b } else { a }
 }
 
 /// Returns points of the outer surface every `step` mm along it, with the ends of all pieces.
