@@ -164,11 +164,11 @@ pub(super) fn contact_name(part: &Part) -> String {
 fn outline(section: &Section) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for piece in &section.pieces {
-        if points.last().is_some_and(|last| last[0] != piece.xi[0]) {
+        if points.last().is_some_and(|last| last[0] != piece.xi.low) {
             points.push([f64::NAN; 2]);
         }
         let branch = &section.branches[piece.branch];
-        let xi = equal_steps(piece.xi[0], piece.xi[1], OUTLINE_POINTS);
+        let xi = equal_steps(piece.xi.low, piece.xi.high, OUTLINE_POINTS);
         points.extend(xi.into_iter().map(|xi| [xi, branch.height(xi)]));
     }
     points

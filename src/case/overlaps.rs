@@ -48,7 +48,7 @@ pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> V
     parts.truncate(if rules.alone { 1 } else { parts.len() });
     let found = |group: &GridGroup| Some((group.clone(), weighted_frame(upright, &group.extent, sunk)?));
     let mut found: Vec<_> = parts.iter().filter_map(found).collect();
-    found.sort_by(|(a, _), (b, _)| a.extent.xi[0].total_cmp(&b.extent.xi[0]));
+    found.sort_by(|(a, _), (b, _)| a.extent.xi.low.total_cmp(&b.extent.xi.low));
     let near: Vec<f64> =
         found.windows(2).map(|pair| nearness(upright, [&pair[0].0, &pair[1].0], rules)).collect();
     let turned = |k: usize| {
@@ -59,7 +59,7 @@ pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> V
         }
         angles / weights
     };
-    let middle = |k: usize| 0.5 * (found[k].0.extent.xi[1] + found[k + 1].0.extent.xi[0]);
+    let middle = |k: usize| 0.5 * (found[k].0.extent.xi.high + found[k + 1].0.extent.xi.low);
     let overlap = |k: usize| {
         let (group, frame) = &found[k];
         let nearest = Interval::new(
@@ -77,7 +77,7 @@ fn nearness(upright: &Placement, [left, right]: [&GridGroup; 2], rules: &RegionR
     let on_rail = |xi: f64| Point2::new(xi, upright.rail().section().height(xi));
     let [a, b] = [left.extent.eta, right.extent.eta];
     let aside = (a[0] - b[1]).max(b[0] - a[1]).max(0.0);
-    let distance = (on_rail(right.extent.xi[0]) - on_rail(left.extent.xi[1])).norm().hypot(aside);
+    let distance = (on_rail(right.extent.xi.low) - on_rail(left.extent.xi.high)).norm().hypot(aside);
     let step = [left, right].map(|group| group.step(rules.spacing)).into_iter().fold(0.0, f64::max);
     let joined = rules.merge.max(CELLS_REACHED * step);
     let t = ((distance - joined) / TURNED_OVER).clamp(0.0, 1.0);

@@ -87,7 +87,7 @@ pub struct GridGroup {
 /// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
 /// let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
 /// let axes = groups(&patch, 0.0, None)[0].axes(Some([0.5, 0.5]))?;
-/// assert!(axes.xi.contains(&0.0) && axes.xi[0] < patch.components[0].xi[0]);
+/// assert!(axes.xi.contains(&0.0) && axes.xi[0] < patch.components[0].xi.low);
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridGroup> {

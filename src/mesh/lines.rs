@@ -70,7 +70,7 @@ impl BandMeeting {
     pub(super) fn all(bands: &[Band], shares: &[Vec<f64>]) -> Vec<Self> {
         let mut meetings: Vec<Self> = Vec::new();
         for band in bands {
-            let xi = band.xi[1];
+            let xi = band.xi.high;
             if meetings.iter().any(|known| known.xi == xi) || !bands.iter().any(|next| band.meets(next)) {
                 continue;
             }
@@ -98,7 +98,7 @@ impl BandMeeting {
         band: &Band,
         shares: &[f64],
     ) -> Vec<usize> {
-        let side = band.sides[usize::from(self.xi == band.xi[1])];
+        let side = band.sides[usize::from(self.xi == band.xi.high)];
         let mut evaluator = Evaluator::new(placement);
         let place = |share: &f64| {
             let eta = between(side, *share);

@@ -161,7 +161,7 @@ impl StripBuilder<'_> {
         let bands = &component.bands;
         let shares = lines(bands, &self.shares);
         let mut meetings: Vec<BandMeeting> = BandMeeting::all(bands, &shares);
-        let whole = component.xi[1] - component.xi[0];
+        let whole = component.xi.high - component.xi.low;
         let mut first_strip = 0;
         self.mesh.points.reserve((strips + 1) * self.shares.len());
         self.mesh.cells.reserve(strips * self.shares.len());
@@ -171,7 +171,7 @@ impl StripBuilder<'_> {
             let (mut before, mut row): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
             for (i, &[xi, low, high]) in slices.iter().enumerate() {
                 match meetings.iter_mut().find(|meeting| meeting.xi == xi) {
-                    Some(meeting) if xi == band.xi[0] || xi == band.xi[1] => {
+                    Some(meeting) if xi == band.xi.low || xi == band.xi.high => {
                         row = meeting.row(&mut self.mesh.points, self.placement, band, shares);
                     }
                     _ => self.row(shares, xi, Interval::new(low, high), &mut row),
@@ -291,17 +291,17 @@ fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
 /// corners the edges are equal steps of the angle.
 fn strip_edges(band: &Band, strips_per_mm: f64) -> Vec<f64> {
     let grading = band.grading();
-    let strips = (strips_per_mm * (band.xi[1] - band.xi[0])).round().max(2.0);
+    let strips = (strips_per_mm * (band.xi.high - band.xi.low)).round().max(2.0);
     let least = LEAST_STRIP / strips;
-    let mut kept = vec![(0.0, band.xi[0])];
+    let mut kept = vec![(0.0, band.xi.low)];
     for &corner in &band.corners {
         let t = grading.parameter(corner);
         if t - kept[kept.len() - 1].0 >= least && 1.0 - t >= least {
             kept.push((t, corner));
         }
     }
-    kept.push((1.0, band.xi[1]));
-    let mut edges = vec![band.xi[0]];
+    kept.push((1.0, band.xi.high));
+    let mut edges = vec![band.xi.low];
     for pair in kept.windows(2) {
         let [(from, _), (to, xi)] = [pair[0], pair[1]];
         // A band without corners always gets two strips, because two tips cannot share one.

@@ -43,7 +43,7 @@ const SEEN: f64 = 1e-9;
 /// # Examples
 /// ```
 /// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
-/// use wheelrail::{Window, mesh::Surface};
+/// use wheelrail::{Interval, Window, mesh::Surface};
 /// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
 /// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
 /// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;

@@ -258,7 +258,7 @@ fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
         assert!((gap.gap(tip, 0.0) - delta * gap.angle(tip).cos()).abs() < 1e-14);
     }
     let angle = gap.angles(part.xi);
-    assert!((part.xi[0] + part.xi[1]).abs() < 1e-9 && (angle[1] - part.xi[1] / 13.0).abs() < 1e-12);
+    assert!((part.xi.low + part.xi.high).abs() < 1e-9 && (angle[1] - part.xi.high / 13.0).abs() < 1e-12);
     // Cells of a fine grid.
     let step = 0.02;
     let axis =
@@ -273,7 +273,7 @@ fn a_conformal_patch_has_its_tips_where_the_gap_is_closed() {
     let cells = inside.sum::<usize>() as f64 * step * step;
     assert!((cells / patch.area() - 1.0).abs() < 1e-3, "{cells} {}", patch.area());
     let wider = Patch::over_rail(&placement, 0.1, &window);
-    assert!(wider.area() > patch.area() && wider.components[0].xi[1] > part.xi[1]);
+    assert!(wider.area() > patch.area() && wider.components[0].xi.high > part.xi.high);
     // A window that is too small cuts the patch.
     let small = Window { xi: Interval::new(-11.0, 2.0), eta: Interval::symmetric(14.0) };
     assert!(Patch::over_rail(&placement, delta, &small).components[0].cut_by_window);

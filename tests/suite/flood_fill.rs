@@ -276,7 +276,7 @@ pub struct Open {
 /// What a fill of such cells \[mm\] may miss of the area beside the ends of a component along ξ that are ends of a surface \[mm²\].
 fn beside_profile_ends(patch: &Patch, cell: f64) -> f64 {
     let ends = |c: &Component| c.ends.iter().filter(|end| **end == End::ProfileEnd).count();
-    patch.components.iter().map(|c| 0.5 * cell * (c.eta[1] - c.eta[0]) * ends(c) as f64).sum()
+    patch.components.iter().map(|c| 0.5 * cell * (c.eta.high - c.eta.low) * ends(c) as f64).sum()
 }
 
 /// Every point, the components, the area and the cuts of a patch against fills.

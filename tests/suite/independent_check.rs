@@ -85,7 +85,7 @@ fn a_wrong_separation_is_caught() {
             assert!((report.separation.median - wrong.abs()).abs() < 1e-12, "{report}");
         }
         // At a single point.
-        let at = [request.window.xi[1], request.window.eta[0]];
+        let at = [request.window.xi.high, request.window.eta.low];
         let report = checked(&placement, &placement, &request, |a, xi, eta| {
             if [xi, eta] == at {
                 a.separation += 1e-6;

@@ -91,7 +91,7 @@ fn crossed_cylinders_give_their_ellipse() -> Result<()> {
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         let (a, b) = ((delta * (600.0 - delta)).sqrt(), (delta * (920.0 - delta)).sqrt());
         // Rounding of s − δ moves a tip by ε δ × dξ/ds = ε ξ/2.
-        for (found, exact) in [(-c.xi[0], a), (c.xi[1], a), (-c.eta[0], b), (c.eta[1], b)] {
+        for (found, exact) in [(-c.xi.low, a), (c.xi.high, a), (-c.eta.low, b), (c.eta.high, b)] {
             assert!((found - exact).abs() <= 8.0 * f64::EPSILON * exact, "δ = {delta}: {found}, not {exact}");
         }
         let hertz = (PI * 2.0 * delta * (300f64 * 460.0).sqrt(), delta / 300.0);
@@ -113,8 +113,8 @@ fn the_turned_ellipse_keeps_its_area_and_extents() -> Result<()> {
         let area = PI * delta * (600f64 * 920.0).sqrt() / cos;
         assert!((c.area / area - 1.0).abs() < delta / 300.0 + 1e-10, "{} {area}", c.area);
         let (xi, eta) = ((600.0 * delta).sqrt(), (delta * (920.0 + 600.0 * sin * sin)).sqrt() / cos);
-        assert!((c.xi[1] / xi - 1.0).abs() < delta / 300.0 + 1e-10, "{} {xi}", c.xi[1]);
-        assert!((c.eta[1] / eta - 1.0).abs() < delta / 300.0 + 1e-9, "{} {eta}", c.eta[1]);
+        assert!((c.xi.high / xi - 1.0).abs() < delta / 300.0 + 1e-10, "{} {xi}", c.xi.high);
+        assert!((c.eta.high / eta - 1.0).abs() < delta / 300.0 + 1e-9, "{} {eta}", c.eta.high);
         let tip = c.boundary[0];
         assert!((tip[1] / (tip[0] * skew.tan()) - 1.0).abs() < delta / 300.0 + 1e-6, "{tip:?}");
     }
@@ -225,7 +225,7 @@ fn a_larger_approach_contains_the_smaller_patch() {
                 wide.is_some_and(|wide| wide.grown(SAME_END).contains(eta)),
                 "{name}: ({xi}, {eta}) outside {wide:?}"
             );
-            let of = large.components.iter().filter(|c| c.xi[0] <= xi && xi <= c.xi[1]).count();
+            let of = large.components.iter().filter(|c| c.xi.low <= xi && xi <= c.xi.high).count();
             assert_eq!(of, 1, "{name}: ξ = {xi} lies in {of} components");
         }
     }
@@ -267,14 +267,14 @@ fn a_tiny_approach_finds_the_tiny_patch_at_c() {
             let placement = reference.placement().and_then(|placement| placement.with_skew(skew));
             let placement = placement.expect("a placement");
             let patch = Patch::new(&placement, delta, &Window::UNBOUNDED);
-            let at_c = patch.components.iter().find(|c| c.xi[0] < 0.0 && c.xi[1] > 0.0);
+            let at_c = patch.components.iter().find(|c| c.xi.low < 0.0 && c.xi.high > 0.0);
             let Some(c) = at_c else { panic!("{} δ = {delta} χ = {skew}: no patch at C", reference.name) };
-            assert!(c.area > 0.0 && c.eta[0] < 0.0 && c.eta[1] > 0.0, "{}: {c:?}", reference.name);
+            assert!(c.area > 0.0 && c.eta.low < 0.0 && c.eta.high > 0.0, "{}: {c:?}", reference.name);
             let scaled = Patch::new(&placement, delta / 4.0, &Window::UNBOUNDED);
-            let quarter = scaled.components.iter().find(|c| c.xi[0] < 0.0 && c.xi[1] > 0.0).map(|c| c.area);
+            let quarter = scaled.components.iter().find(|c| c.xi.low < 0.0 && c.xi.high > 0.0).map(|c| c.area);
             // Far inside both contact segments the patch is an ellipse, whose area goes with δ.
             let ratio = quarter.map(|q| c.area / q);
-            let smooth = c.ends == [End::Tip; 2] && c.xi[1] - c.xi[0] < 0.05;
+            let smooth = c.ends == [End::Tip; 2] && c.xi.high - c.xi.low < 0.05;
             assert!(
                 !smooth || ratio.is_some_and(|r| (r - 4.0).abs() < 1e-2),
                 "{} δ = {delta} χ = {skew}: {ratio:?}",
@@ -305,7 +305,7 @@ fn windows_cut_and_say_so() -> Result<()> {
     for skew in [0.0, 0.02] {
         let placement = crossed(skew)?;
         let whole = Patch::new(&placement, delta, &Window::UNBOUNDED);
-        let [a, b] = [whole.components[0].xi[1], whole.components[0].eta[1]];
+        let [a, b] = [whole.components[0].xi.high, whole.components[0].eta.high];
         let parts = |xi: [f64; 2], eta: [f64; 2]| {
             Patch::new(&placement, delta, &Window { xi: xi.into(), eta: eta.into() })
         };
@@ -365,7 +365,7 @@ fn the_end_of_a_profile_cuts_the_patch() -> Result<()> {
         let placement = Pair::new(rail.clone(), wheel, 460.0)?.placed(0.0, 0.0, skew)?;
         let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
-        assert_eq!((c.ends, c.xi[1]), ([End::Tip, End::ProfileEnd], 2.0));
+        assert_eq!((c.ends, c.xi.high), ([End::Tip, End::ProfileEnd], 2.0));
         assert!(!c.cut_by_window);
         let last: Vec<_> = c.boundary.iter().filter(|p| p[0] == 2.0).collect();
         assert_eq!(last.len(), 2);

@@ -191,7 +191,7 @@ fn grids_never_cut_the_patch() {
                 let axes = group.axes(spacing).expect("axes");
                 assert!(covers(&placement, delta, group, &axes), "{name}: {group:?}");
                 let extent = &group.extent;
-                let short = (extent.xi[1] - extent.xi[0]).min(extent.eta[1] - extent.eta[0]);
+                let short = (extent.xi.high - extent.xi.low).min(extent.eta.high - extent.eta.low);
                 assert!(spacing.is_some() || short / axes.spacing[0] >= 16.0 - 1e-9, "{name}");
                 if placement.skew() == 0.0 {
                     let eta = &axes.eta;
@@ -211,7 +211,7 @@ fn parts_are_merged_by_a_stated_distance_and_c_comes_first() -> Result<()> {
     let apart = mesh::groups(&patch, 0.0, None);
     assert_eq!(patch.components.len(), 2);
     assert_eq!(apart.iter().map(|g| g.components.clone()).collect::<Vec<_>>(), [vec![1], vec![0]]);
-    let gap = patch.components[1].xi[0] - patch.components[0].xi[1];
+    let gap = patch.components[1].xi.low - patch.components[0].xi.high;
     assert_eq!(mesh::groups(&patch, 0.99 * gap, None).len(), 2);
     let merged = mesh::groups(&patch, 1.01 * gap, None);
     assert_eq!(merged.len(), 1);

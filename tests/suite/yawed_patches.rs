@@ -153,7 +153,7 @@ fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {
         let patch = check(&format!("yaw {yaw}"), &placement, 0.2);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         assert_eq!((c.ends, c.holes.len()), ([End::Tip; 2], 0), "yaw {yaw}");
-        let most = (0..400).map(|k| c.xi[0] + (c.xi[1] - c.xi[0]) * (f64::from(k) + 0.5) / 400.0);
+        let most = (0..400).map(|k| c.xi.low + (c.xi.high - c.xi.low) * (f64::from(k) + 0.5) / 400.0);
         let most = most.map(|xi| sliced(&patch, xi).len()).max();
         assert_eq!(most, Some(2), "yaw {yaw}");
     }

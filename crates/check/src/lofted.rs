@@ -231,7 +231,7 @@ impl<'a> MeshedLoft<'a> {
         for (strip, own) in lofted.loft().strips.iter().enumerate() {
             let [first, last] = own.reach().ends();
             let [from, to] =
-                [window.eta[0] - MARGIN, window.eta[1] + MARGIN].map(|eta| (middle + eta).clamp(first, last));
+                [window.eta.low - MARGIN, window.eta.high + MARGIN].map(|eta| (middle + eta).clamp(first, last));
             if from >= to {
                 continue;
             }
