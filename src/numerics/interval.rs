@@ -113,6 +113,12 @@ impl Interval {
         self.low <= other.high && other.low <= self.high
     }
 
+    /// Says whether both intervals share more than one number.
+    #[inline(always)]
+    pub fn overlaps(self, other: Self) -> bool {
+        self.low.max(other.low) < self.high.min(other.high)
+    }
+
     /// Says whether there is no number in the interval.
     #[inline(always)]
     pub fn is_empty(self) -> bool {

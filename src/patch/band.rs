@@ -249,7 +249,7 @@ impl Band {
     /// Returns whether the component continues in `next`: this band ends where `next` begins, and their slices overlap
     /// there.
     pub(crate) fn meets(&self, next: &Self) -> bool {
-        self.xi.high == next.xi.low && overlap(self.sides[1], next.sides[0])
+        self.xi.high == next.xi.low && self.sides[1].overlaps(next.sides[0])
     }
 }
 
@@ -323,11 +323,6 @@ fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f6
     let half = (other + (other - square) * share).sqrt();
     let middle = last + (last - middle) * share;
     [middle - half, middle + half]
-}
-
-/// Returns whether two intervals have more than a point in common.
-pub(super) fn overlap(a: Interval, b: Interval) -> bool {
-    a.cut(b).width() > 0.0
 }
 
 /// Returns the ξ inside (a, b) at which a body's surface steps or ends because its profile overhangs. `extent` is that of

@@ -16,11 +16,13 @@ mod slice;
 mod stretch;
 pub(crate) mod turning_points;
 mod varying;
+mod window;
 
 pub(crate) use band::{Band, Places};
 pub use components::{Component, Patch};
 pub(crate) use loops::{BandSide, rings};
-pub use outline::{End, Outline, Window};
+pub use outline::{End, Outline};
 pub(crate) use plain::least_on_roller;
 pub use slice::{Slice, Slicer};
 pub(crate) use turning_points::turning_points;
+pub use window::Window;

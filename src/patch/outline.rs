@@ -1,10 +1,11 @@
 //! Cuts off the slices of a patch at the edges of a window.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::skewed::circle::{BESIDE, Turned};
 use super::skewed::slicer::Edge;
 use super::slice::Slicer;
+use super::window::Window;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
@@ -13,35 +14,6 @@ use crate::placement::Placement;
 
 /// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-11 of their distance.
 const SLOPE_NOISE: f64 = 1e-11;
-
-/// A rectangle of the ξ–η plane \[mm\] inside which a patch is sought.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Window {
-    /// Range of ξ \[mm\].
-    pub xi: Interval,
-    /// Range of η \[mm\].
-    pub eta: Interval,
-}
-
-impl Window {
-    /// The whole plane: only the ends of the bodies bound the patch.
-    pub const UNBOUNDED: Self = Self { xi: Interval::ALL, eta: Interval::ALL };
-
-    /// Tells whether the two share a point, one on their edges included.
-    pub fn meets(&self, other: &Self) -> bool {
-        self.xi.meets(other.xi) && self.eta.meets(other.eta)
-    }
-
-    /// Tells whether a point lies in the window, its edges included.
-    pub fn contains(&self, xi: f64, eta: f64) -> bool {
-        self.xi.contains(xi) && self.eta.contains(eta)
-    }
-
-    /// Returns the smallest window that holds both.
-    pub fn hull(self, other: Self) -> Self {
-        Self { xi: self.xi.hull(other.xi), eta: self.eta.hull(other.eta) }
-    }
-}
 
 /// What bounds a component at one of its ends in ξ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -1,7 +1,8 @@
 //! Finds the bands of a patch without skew. A line of constant ξ then meets the patch in at most one interval.
 
 use super::band::{Band, Turn, steps};
-use super::outline::{End, Outline, Window};
+use super::outline::{End, Outline};
+use super::window::Window;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};

@@ -271,11 +271,11 @@ impl StretchPair<'_, '_> {
             if equal.is_empty() {
                 return Verdict::Nothing;
             }
-            // Where the tangents would be equal with the curvatures of both middles, or NaN.
+            // Where the tangents would be equal with the curvatures of both middles.
             let bends = [&wheel.place, &rail.place].map(|place| place.turn / place.run);
             let near =
                 above.x + (below.sin - above.sin + bends[1] * (above.x - below.x)) / (bends[0] - bends[1]);
-            return Verdict::OneNear(equal.nearest(near));
+            return Verdict::OneNear(if near.is_nan() { equal.low } else { equal.nearest(near) });
         }
         let reach = (shared + -above.x).magnitude() + slack;
         let least = missing.nearest(0.0).abs();

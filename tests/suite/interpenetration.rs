@@ -271,7 +271,8 @@ fn a_tiny_approach_finds_the_tiny_patch_at_c() {
             let Some(c) = at_c else { panic!("{} δ = {delta} χ = {skew}: no patch at C", reference.name) };
             assert!(c.area > 0.0 && c.eta.low < 0.0 && c.eta.high > 0.0, "{}: {c:?}", reference.name);
             let scaled = Patch::new(&placement, delta / 4.0, &Window::UNBOUNDED);
-            let quarter = scaled.components.iter().find(|c| c.xi.low < 0.0 && c.xi.high > 0.0).map(|c| c.area);
+            let quarter =
+                scaled.components.iter().find(|c| c.xi.low < 0.0 && c.xi.high > 0.0).map(|c| c.area);
             // Far inside both contact segments the patch is an ellipse, whose area goes with δ.
             let ratio = quarter.map(|q| c.area / q);
             let smooth = c.ends == [End::Tip; 2] && c.xi.high - c.xi.low < 0.05;

@@ -46,6 +46,7 @@ mod reference_yawed;
 mod report;
 mod rollers;
 mod slices;
+mod specimens;
 mod steps;
 mod strips;
 mod sweep_order;

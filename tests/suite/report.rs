@@ -1,30 +1,36 @@
 //! The report, measured small: every section, every file, every column.
 
+use std::sync::LazyLock;
+
+use wheelrail::measured::CUTOFF_WAVELENGTH;
 use wheelrail::scene::{Scene, parse};
+use wheelrail_report::measured::{CurveChoice, worst};
 use wheelrail_report::measurements::{Effort, Measurements, measure};
 use wheelrail_report::page::{FILES, PAGE, excerpt, page, sections};
 use wheelrail_report::processes::PROCESSES;
 use wheelrail_report::rates::Extent;
 use wheelrail_report::reference::{FILES as SCENES, references};
+use wheelrail_report::speed::{Timing, race};
+use wheelrail_report::table::{markdown, quoted};
 
-fn small() -> Measurements {
+/// Measured once.
+static MEASUREMENTS: LazyLock<Measurements> = LazyLock::new(|| {
     let effort = Effort {
         sides: vec![8, 20],
         seconds: 0.0,
         growth: vec![10, 20],
         every_pair: 50,
         every_case: 15,
-        spacings: vec![2.0],
+        spacings: vec![0.5],
         sweeps: Extent { positions: 3, amplitude: 0.2, instruments: vec![[0.5, 3.0]] },
         case_side: 20,
     };
     measure(&effort, &mut |_| {}).expect("a measurement")
-}
+});
 
 #[test]
 fn every_section_and_file_is_there() {
-    let measurements = small();
-    let sections = sections(&measurements);
+    let sections = sections(&MEASUREMENTS);
     let origin = vec![("command", "wheelrail report".to_string())];
     let text = page(&origin, &sections);
     for section in &sections {
@@ -38,13 +44,12 @@ fn every_section_and_file_is_there() {
     for name in expected {
         assert!(text.contains(name), "{name} is nowhere linked");
     }
-    assert!(excerpt(&measurements, &origin).contains("`wheelrail report`"));
+    assert!(excerpt(&MEASUREMENTS, &origin).contains("`wheelrail report`"));
 }
 
 #[test]
 fn accuracy_csv_has_its_columns_and_every_row() {
-    let measurements = small();
-    let sections = sections(&measurements);
+    let sections = sections(&MEASUREMENTS);
     let file = sections.iter().flat_map(|s| &s.files).find(|(name, _)| *name == "accuracy.csv");
     let text = String::from_utf8(file.expect("accuracy.csv").1.clone()).expect("UTF-8");
     let mut lines = text.lines();
@@ -68,7 +73,7 @@ fn accuracy_csv_has_its_columns_and_every_row() {
             assert!(error <= tolerance.max(2e-12), "{line}");
         }
     }
-    assert!(measurements.threads.iter().all(|row| row.same_bits));
+    assert!(MEASUREMENTS.threads.iter().all(|row| row.same_bits));
 }
 
 /// The scenes that are timed as whole processes stand alone, and say what the examples say.
@@ -97,4 +102,38 @@ fn every_reference_file_is_embedded() {
     on_disk.sort();
     let embedded: Vec<String> = references().expect("references").into_iter().map(|r| r.name).collect();
     assert_eq!(on_disk, embedded);
+}
+
+#[test]
+fn noise_ruins_interpolation_and_not_the_default() {
+    let pressure = |curve| worst(&MEASUREMENTS.evidence, curve, 0.5, 1.0)[0];
+    let interpolated = pressure(CurveChoice::Interpolation);
+    let smoothed = pressure(CurveChoice::Smoothing(CUTOFF_WAVELENGTH));
+    assert!(smoothed < 0.1 && interpolated > 3.0 * smoothed, "off by {interpolated} and {smoothed}");
+}
+
+#[test]
+fn whoever_had_least_time_runs_next_until_the_time_is_up() {
+    let mut order = Vec::new();
+    let mut timings = [Timing::NONE; 3];
+    let mut run = |k| {
+        order.push(k);
+        [0.5, 0.125, 32.0][k]
+    };
+    race(&mut timings, 1.0, 3, &mut run);
+    assert_eq!(timings[0], Timing { best: 0.5, spent: 1.5, runs: 3 });
+    assert_eq!(timings[1], Timing { best: 0.125, spent: 1.0, runs: 8 });
+    // The run is too long for a second one.
+    assert_eq!(timings[2], Timing { best: 32.0, spent: 32.0, runs: 1 });
+    // A later race continues where the first one ended.
+    race(&mut timings, 2.0, 3, &mut run);
+    assert_eq!(timings.map(|timing| timing.runs), [4, 16, 1]);
+    assert_eq!(order[..9], [0, 1, 2, 1, 1, 1, 0, 1, 1]);
+}
+
+#[test]
+fn cells_are_quoted_and_aligned() {
+    assert_eq!(quoted("a \"b\", c"), "\"a \"\"b\"\", c\"");
+    let table = markdown(&["a", "b"], 1, &[vec!["x".into(), "1".into()]]);
+    assert_eq!(table, "| a | b |\n| --- | ---: |\n| x | 1 |\n");
 }

@@ -230,8 +230,8 @@ impl<'a> MeshedLoft<'a> {
         let (window, middle) = (request.window, lofted.along());
         for (strip, own) in lofted.loft().strips.iter().enumerate() {
             let [first, last] = own.reach().ends();
-            let [from, to] =
-                [window.eta.low - MARGIN, window.eta.high + MARGIN].map(|eta| (middle + eta).clamp(first, last));
+            let [from, to] = [window.eta.low - MARGIN, window.eta.high + MARGIN]
+                .map(|eta| (middle + eta).clamp(first, last));
             if from >= to {
                 continue;
             }

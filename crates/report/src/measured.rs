@@ -344,20 +344,3 @@ fn recommendation(rows: &[MeasuredRow]) -> String {
     );
     out
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn noise_ruins_interpolation_and_not_the_default() -> Result<()> {
-        let reference = DrawnPair::new()?;
-        let pressure = |curve| -> Result<f64> {
-            Ok(reference.errors(0.5, 1.0, curve)?.pressure.map_or(NO_ELLIPSE, f64::abs))
-        };
-        let (interpolated, smoothed) =
-            (pressure(CurveChoice::Interpolation)?, pressure(CurveChoice::Smoothing(CUTOFF_WAVELENGTH))?);
-        assert!(smoothed < 0.1 && interpolated > 3.0 * smoothed, "off by {interpolated} and {smoothed}");
-        Ok(())
-    }
-}

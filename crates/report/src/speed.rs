@@ -144,27 +144,3 @@ pub fn race(timings: &mut [Timing], seconds: f64, least: usize, mut run: impl Fn
         timings[k] = Timing { best: best.min(time), spent: spent + time, runs: runs + 1 };
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn whoever_had_least_time_runs_next_until_the_time_is_up() {
-        let mut order = Vec::new();
-        let mut timings = [Timing::NONE; 3];
-        let mut run = |k| {
-            order.push(k);
-            [0.5, 0.125, 32.0][k]
-        };
-        race(&mut timings, 1.0, 3, &mut run);
-        assert_eq!(timings[0], Timing { best: 0.5, spent: 1.5, runs: 3 });
-        assert_eq!(timings[1], Timing { best: 0.125, spent: 1.0, runs: 8 });
-        // The run is too long for a second one.
-        assert_eq!(timings[2], Timing { best: 32.0, spent: 32.0, runs: 1 });
-        // A later race continues where the first one ended.
-        race(&mut timings, 2.0, 3, &mut run);
-        assert_eq!(timings.map(|timing| timing.runs), [4, 16, 1]);
-        assert_eq!(order[..9], [0, 1, 2, 1, 1, 1, 0, 1, 1]);
-    }
-}

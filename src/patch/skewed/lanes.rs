@@ -7,7 +7,7 @@
 use super::events::{Events, events};
 use super::slicer::Edge;
 use crate::numerics::interval::Interval;
-use crate::patch::band::{Band, Turn, overlap, steps};
+use crate::patch::band::{Band, Turn, steps};
 use crate::patch::outline::{End, Outline};
 
 /// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval, and within which
@@ -132,7 +132,7 @@ impl LaneWalk<'_, '_> {
             .flat_map(|i| (0..groups.len()).map(move |j| [i, j]))
             .filter(|&[i, j]| {
                 let shared = groups[j].iter().any(|k| lanes[i].group.contains(k));
-                shared || overlap(lanes[i].edge, begins[j])
+                shared || lanes[i].edge.overlaps(begins[j])
             })
             .collect();
         let partners = |side: usize, k: usize| -> Vec<usize> {

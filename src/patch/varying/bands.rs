@@ -4,7 +4,8 @@ use super::lines::{Line, LineSlice, TO_LOWEST, Varying, links};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};
-use crate::patch::outline::{End, Window};
+use crate::patch::outline::End;
+use crate::patch::window::Window;
 use crate::placement::Placement;
 
 /// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart. In a crease, whose bottom is

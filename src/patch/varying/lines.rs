@@ -8,10 +8,9 @@
 
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
-use crate::patch::band::overlap;
 use crate::patch::level::Level;
-use crate::patch::outline::Window;
 use crate::patch::skewed::slicer::Edge;
+use crate::patch::window::Window;
 use crate::placement::Placement;
 
 /// Step of the lines of constant ξ \[mm\].
@@ -279,7 +278,7 @@ impl<'a> Varying<'a> {
 /// Lists the pairs of overlapping intervals of two lines.
 pub(super) fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
     let all = (0..a.slices.len()).flat_map(|i| (0..b.slices.len()).map(move |j| [i, j]));
-    all.filter(|&[i, j]| overlap(a.slices[i].eta, b.slices[j].eta)).collect()
+    all.filter(|&[i, j]| a.slices[i].eta.overlaps(b.slices[j].eta)).collect()
 }
 
 /// Tells whether the intervals of two lines answer each other one to one, and none has an end that moves by more than a step \[mm\] or

@@ -74,7 +74,7 @@ fn drawn(title: &str, average: &Average) -> String {
             at: point.at,
             normal: point.normal,
             spread: point.spread,
-            range: point.range.into(),
+            range: point.range,
         })
         .collect();
     let (points_of, spread) = (counted(average.points.len(), "point"), average.spread());

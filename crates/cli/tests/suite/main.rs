@@ -8,6 +8,29 @@
     reason = "tests stop at the first surprise and say what they saw"
 )]
 
+// Modules of the program that have tests of their own. The program uses more of them.
+#[path = "../../src/answer.rs"]
+#[allow(dead_code)]
+mod answer;
+#[path = "../../src/sweep/conicity.rs"]
+#[allow(dead_code)]
+mod conicity;
+#[path = "../../src/png.rs"]
+#[allow(dead_code)]
+mod png;
+#[path = "../../src/sweep/positions.rs"]
+#[allow(dead_code)]
+mod positions;
+#[path = "../../src/progress.rs"]
+#[allow(dead_code)]
+mod progress;
+#[path = "../../src/range.rs"]
+#[allow(dead_code)]
+mod range;
+#[path = "../../src/report/splice.rs"]
+#[allow(dead_code)]
+mod splice;
+
 mod absurd;
 mod answers;
 #[path = "../../../../tests/suite/campaign.rs"]

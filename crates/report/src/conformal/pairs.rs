@@ -158,7 +158,7 @@ fn patch(site: &Site) -> Option<Patch> {
 /// Returns the range of α \[rad\] within each part of a patch over the rail's surface.
 fn angles(patch: &Patch, site: &Site) -> impl Iterator<Item = Interval> {
     let gap = NormalGap::new(&site.contact.placement);
-    patch.components.iter().map(move |part| gap.angles(part.xi).into())
+    patch.components.iter().map(move |part| gap.angles(part.xi))
 }
 
 /// Returns the ranges of σ and η of the plane's patch over the grid of a site \[mm\].
@@ -171,7 +171,7 @@ fn plane_extents(site: &Site, gap: &NormalGap<'_>) -> [Interval; 2] {
 /// Returns the hulls of two ranges and those of the parts of a patch.
 fn joined(ranges: [Interval; 2], patch: &Patch) -> [Interval; 2] {
     let parts = patch.components.iter();
-    parts.fold(ranges, |[xi, eta], part| [xi.hull(part.xi.into()), eta.hull(part.eta.into())])
+    parts.fold(ranges, |[xi, eta], part| [xi.hull(part.xi), eta.hull(part.eta)])
 }
 
 fn widened(extent: Interval, share: f64) -> Interval {

@@ -1,0 +1,34 @@
+//! The part of the ξ–η plane in which a patch is sought.
+
+use serde::{Deserialize, Serialize};
+
+use crate::numerics::interval::Interval;
+
+/// A rectangle of the ξ–η plane \[mm\] inside which a patch is sought.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Window {
+    /// Range of ξ \[mm\].
+    pub xi: Interval,
+    /// Range of η \[mm\].
+    pub eta: Interval,
+}
+
+impl Window {
+    /// The whole plane: only the ends of the bodies bound the patch.
+    pub const UNBOUNDED: Self = Self { xi: Interval::ALL, eta: Interval::ALL };
+
+    /// Tells whether the two share a point, one on their edges included.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.xi.meets(other.xi) && self.eta.meets(other.eta)
+    }
+
+    /// Tells whether a point lies in the window, its edges included.
+    pub fn contains(&self, xi: f64, eta: f64) -> bool {
+        self.xi.contains(xi) && self.eta.contains(eta)
+    }
+
+    /// Returns the smallest window that holds both.
+    pub fn hull(self, other: Self) -> Self {
+        Self { xi: self.xi.hull(other.xi), eta: self.eta.hull(other.eta) }
+    }
+}
