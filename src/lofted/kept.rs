@@ -94,7 +94,7 @@ impl Curve {
                     [at, rate.map(|rate| rate / count)]
                 });
                 let powers = match &profile.segments()[segment].shape {
-                    Shape::Polynomial(polynomial) => Some(polynomial.over(shares.ends())),
+                    Shape::Polynomial(polynomial) => Some(polynomial.over(shares)),
                     Shape::Arc(_) => None,
                 };
                 let cell = Cell { segment, shares, powers, ends };

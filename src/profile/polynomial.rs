@@ -112,10 +112,10 @@ impl Polynomial {
     }
 
     /// Returns the coefficients of x and z \[mm\] in powers of the share of a part, which goes over these shares of the range.
-    pub(crate) fn over(&self, [first, last]: [f64; 2]) -> [Vec<f64>; 2] {
-        let unit = (last - first) * self.t.width();
+    pub(crate) fn over(&self, shares: Interval) -> [Vec<f64>; 2] {
+        let unit = shares.width() * self.t.width();
         [&self.x, &self.z].map(|c| {
-            let about = recentred(c, Twice::from(self.t.low + first * self.t.width()));
+            let about = recentred(c, Twice::from(self.t.low + shares.low * self.t.width()));
             about.into_iter().zip(0..).map(|(c, power)| f64::from(c) * unit.powi(power)).collect()
         })
     }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::arc::Arc;
 use super::polynomial::Polynomial;
 use super::station::Station;
+use crate::numerics::interval::Interval;
 
 /// The curve of one segment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -74,7 +75,7 @@ impl Segment {
                 [[at.x, at.z], [length * at.cos, length * at.sin], [-bend * at.sin, bend * at.cos]]
             }
             Shape::Polynomial(polynomial) => {
-                let about = polynomial.over([share, share + 1.0]);
+                let about = polynomial.over(Interval::new(share, share + 1.0));
                 let term = |k: usize, factor: f64| {
                     [0, 1].map(|axis: usize| about[axis].get(k).map_or(0.0, |c| factor * c))
                 };
