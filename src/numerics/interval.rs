@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// let head = Interval::new(-36.0, 36.0);
 /// assert!(head.contains(10.0) && head.width() == 72.0);
-/// assert_eq!(head.common(Interval::new(20.0, 50.0)), Some(Interval::new(20.0, 36.0)));
+/// assert_eq!(head.cut(Interval::new(20.0, 50.0)), Interval::new(20.0, 36.0));
+/// assert!(head.cut(Interval::new(40.0, 50.0)).is_empty());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
@@ -128,13 +129,9 @@ impl Interval {
     /// Gives the number of the interval that is nearest to a number; NaN of NaN.
     #[inline(always)]
     pub fn nearest(self, number: f64) -> f64 {
-        if number < self.low {
-            self.low
-        } else if number > self.high {
-            self.high
-        } else {
-            number
-        }
+        // In this form the compiler takes its instructions for the larger and the smaller of two numbers.
+        let risen = if number < self.low { self.low } else { number };
+        if risen > self.high { self.high } else { risen }
     }
 
     /// Gives the smallest interval that holds this one and a number.
@@ -153,12 +150,6 @@ impl Interval {
     #[inline(always)]
     pub fn cut(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
-    }
-
-    /// Gives what both intervals share; `None` if not even an end.
-    #[inline(always)]
-    pub fn common(self, other: Self) -> Option<Self> {
-        Some(self.cut(other)).filter(|cut| cut.low <= cut.high)
     }
 
     /// Gives what is below and what is above a number of the interval.
@@ -254,5 +245,42 @@ impl Mul for Interval {
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self, other);
         Self::around([a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_and_quotients_hold_those_of_all_numbers() {
+        let all = [-3.0, -0.5, 0.0, 0.25, 2.0];
+        let intervals =
+            || all.into_iter().flat_map(|a| all.into_iter().map(move |b| Interval::between(a, b)));
+        for (a, b) in intervals().flat_map(|a| intervals().map(move |b| (a, b))) {
+            let product = a * b;
+            for (p, q) in
+                [0.0, 0.3, 1.0].into_iter().flat_map(|p| [0.0, 0.6, 1.0].map(|q| (a.at(p), b.at(q))))
+            {
+                assert!(product.grown(1e-15).contains(p * q), "{a:?} * {b:?} = {product:?}, not {}", p * q);
+                assert!((a + -b).grown(1e-15).contains(p - q), "{a:?} - {b:?}");
+                assert!(b.low <= 0.0 || a.over(b).grown(1e-14).contains(p / q), "{a:?} / {b:?}");
+            }
+            let ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
+            assert!(
+                ends.contains(&product.low) && ends.contains(&product.high),
+                "{a:?} * {b:?} = {product:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn nothing_is_the_hull_of_nothing_and_nan_stays_nan() {
+        let some = Interval::new(-1.0, 2.0);
+        assert_eq!((Interval::NONE.hull(some), Interval::around([])), (some, Interval::NONE));
+        assert!(Interval::NONE.is_empty() && !some.meets(Interval::NONE) && some.holds(Interval::NONE));
+        assert_eq!([-7.0, 0.5, 9.0].map(|number| some.nearest(number)), [-1.0, 0.5, 2.0]);
+        assert!(some.nearest(f64::NAN).is_nan() && !some.contains(f64::NAN));
+        assert_eq!(serde_json::to_string(&some).unwrap(), "[-1.0,2.0]");
     }
 }
