@@ -155,7 +155,7 @@ fn tread_range(curves: &[PlottedCurve], tread: &[bool]) -> Option<Interval> {
         Interval::around(points.map(|(point, _)| point[1]))
     };
     let (on_tread, all) = (range(false), range(true));
-    (on_tread.low < on_tread.high && all.width() > FLATTENED * on_tread.width()).then_some(on_tread)
+    (on_tread.has_width() && all.width() > FLATTENED * on_tread.width()).then_some(on_tread)
 }
 
 /// The rows of the lowest contacts, by position and side.

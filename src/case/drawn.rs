@@ -89,7 +89,7 @@ impl Drawn {
 
 /// Gives the places along an axis at which a picture's values are computed; one alone of an interval without length.
 pub(super) fn places(axis: Interval) -> Vec<f64> {
-    if axis.low < axis.high { equal_steps(axis.low, axis.high, DRAWN) } else { vec![axis.low] }
+    if axis.has_width() { equal_steps(axis.low, axis.high, DRAWN) } else { vec![axis.low] }
 }
 
 /// Draws the patch of a placed pair with its boundary and both profiles, as SVG. `title` and `contact` head it; `cells` are

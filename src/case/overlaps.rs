@@ -75,8 +75,7 @@ pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> V
 /// level ends between.
 fn nearness(upright: &Placement, [left, right]: [&GridGroup; 2], rules: &RegionRules) -> f64 {
     let on_rail = |xi: f64| Point2::new(xi, upright.rail().section().height(xi));
-    let [a, b] = [left.extent.eta, right.extent.eta];
-    let aside = (a[0] - b[1]).max(b[0] - a[1]).max(0.0);
+    let aside = left.extent.eta.distance(right.extent.eta);
     let distance = (on_rail(right.extent.xi.low) - on_rail(left.extent.xi.high)).norm().hypot(aside);
     let step = [left, right].map(|group| group.step(rules.spacing)).into_iter().fold(0.0, f64::max);
     let joined = rules.merge.max(CELLS_REACHED * step);

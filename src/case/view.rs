@@ -196,12 +196,12 @@ fn conformal_box(part: &Part) -> Option<Window> {
     let Window { xi: sigma, eta } = part.analysis.conformal.as_ref()?.patch.as_ref()?.extent()?;
     let rail = RailArcLength::new(&part.site.contact.placement);
     let xi = sigma.map(|sigma| on_plane(&rail, [sigma, 0.0])[0]);
-    (xi.low < xi.high).then_some(Window { xi, eta })
+    (xi.has_width()).then_some(Window { xi, eta })
 }
 
 /// Widens an interval that has no length.
 fn with_extent(range: Interval) -> Interval {
-    if range.low < range.high { range } else { range.grown(LEAST_HALF) }
+    if range.has_width() { range } else { range.grown(LEAST_HALF) }
 }
 
 /// Gives n ≥ 2 values in equal steps over an interval. The interval moves by less than a step, so that 0, where C lies, is

@@ -102,7 +102,7 @@ impl<'a> RailArcLength<'a> {
             index += 1;
             at = follow(index, at, true);
         }
-        stretches.retain(|stretch| stretch.sigma.width() > 0.0);
+        stretches.retain(|stretch| stretch.sigma.has_width());
         stretches.sort_by(|a, b| a.sigma.low.total_cmp(&b.sigma.low));
         Self { stretches }
     }

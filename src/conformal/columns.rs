@@ -173,7 +173,7 @@ impl<'g, 'a> Columns<'g, 'a> {
         let (mut from, mut end) = (0.0, f64::INFINITY);
         while let Some(span) = next {
             let Reach { run, u } = span.reach(from, reach);
-            if u.width() > 0.0 || u.low == 0.0 {
+            if u.has_width() || u.low == 0.0 {
                 self.over_span(&span, run, u, out);
             }
             from = u.high;

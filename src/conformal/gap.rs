@@ -165,8 +165,7 @@ impl<'a> NormalGap<'a> {
 
     /// Returns the least and largest α \[rad\] over a range of σ \[mm\], at its ends, joints and equal steps between.
     pub fn angles(&self, over: Interval) -> Interval {
-        let step = |k: usize| over.low + over.width() * k as f64 / ANGLE_STEPS as f64;
-        let steps = (0..=ANGLE_STEPS).map(step);
+        let steps = (0..=ANGLE_STEPS).map(|k| over.step(k, ANGLE_STEPS));
         let joints = self.rail.joints().into_iter().filter(|sigma| over.contains(*sigma));
         Interval::around(steps.chain(joints).map(|sigma| self.angle(sigma)))
     }

@@ -201,9 +201,7 @@ impl<'a> Ray<'a> {
         // A ray from a point in the material is followed against its direction.
         let leans_right = self.n[0] > 0.0;
         let outside = (beside < 0.0) == leans_right || beside.abs() <= self.bodies.joint();
-        let mut towards_end = piece.xi;
-        towards_end[usize::from(outside != leans_right)] = from;
-        let [slopes, _] = branch.derivative_bounds(towards_end);
+        let [slopes, _] = branch.derivative_bounds(piece.xi.split(from)[usize::from(outside == leans_right)]);
         slopes.ends().iter().all(|slope| slope * self.n[0] < self.n[1])
     }
 

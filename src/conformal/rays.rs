@@ -55,7 +55,7 @@ pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<
     let branch = rays[0].branch(piece);
     let of_contact = bodies.wheel.section.contact == Some(piece.branch);
     let rail = bodies.rail().contact.filter(|_| of_contact).map(|r| &bodies.rail().branches[r]);
-    let inside = |x: f64| branch.xi.low <= x && x <= branch.xi.high;
+    let inside = |x: f64| branch.xi.contains(x);
     let from_contact = |k: usize| rays[k].contact.is_some_and(|[xi, _]| inside(xi));
     let over = rail.filter(|_| every::<N>(|k| from_contact(k) && inside(rays[k].p[0])));
     if N > 1 && over.is_none() && rail.is_some() && !every::<N>(|k| !from_contact(k)) {

@@ -149,9 +149,7 @@ impl Sight<'_, '_> {
         let branch = ray.branch(piece);
         let mut all = Vec::new();
         if !ray.passes_once(index) {
-            let mut over = piece.xi;
-            over[usize::from(!rises)] = from;
-            let turns = parallel_to(branch, ray.n, over);
+            let turns = parallel_to(branch, ray.n, piece.xi.split(from)[usize::from(rises)]);
             all.extend(turns.into_iter().map(|xi| self.beside([xi, branch.height(xi)])));
             if !rises {
                 all.reverse();

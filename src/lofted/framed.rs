@@ -378,7 +378,7 @@ impl FramedLoft {
         let [from, to] = eta.ends().map(|eta| self.nearest_level(0.0, eta));
         let runs = (from..=to).flat_map(|level| self.level(level));
         let reach = runs.map(Run::reach).fold(Interval::NONE, Interval::hull);
-        (reach.low < reach.high).then_some(reach)
+        (reach.has_width()).then_some(reach)
     }
 
     fn level(&self, level: i64) -> &[Run] {

@@ -184,8 +184,7 @@ fn sides(extent: &Window) -> [f64; 2] {
 
 /// Returns the distance of two boxes \[mm\]; 0 if they meet.
 fn distance(a: &Window, b: &Window) -> f64 {
-    let gap = |a: Interval, b: Interval| (a.low - b.high).max(b.low - a.high).max(0.0);
-    gap(a.xi, b.xi).hypot(gap(a.eta, b.eta))
+    a.xi.distance(b.xi).hypot(a.eta.distance(b.eta))
 }
 
 /// Makes the grid of square cells of this size. If they are too many, they are stretched: first along the longer side,

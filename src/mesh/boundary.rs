@@ -148,9 +148,8 @@ impl<'a> BoundaryTracer<'a> {
         let band = &self.bands[side.band];
         let mut parameters = vec![0.0];
         for t in band.pieces() {
-            let n = (SAMPLES_PER_SIDE * t.width()).round().max(LEAST_SAMPLES);
-            parameters.extend((1..n as usize).map(|k| t.low + t.width() * k as f64 / n));
-            parameters.push(t.high);
+            let n = (SAMPLES_PER_SIDE * t.width()).round().max(LEAST_SAMPLES) as usize;
+            parameters.extend((1..=n).map(|k| t.step(k, n)));
         }
         if side.branch == 1 {
             parameters.reverse();

@@ -161,7 +161,7 @@ impl StripBuilder<'_> {
         let bands = &component.bands;
         let shares = lines(bands, &self.shares);
         let mut meetings: Vec<BandMeeting> = BandMeeting::all(bands, &shares);
-        let whole = component.xi.high - component.xi.low;
+        let whole = component.xi.width();
         let mut first_strip = 0;
         self.mesh.points.reserve((strips + 1) * self.shares.len());
         self.mesh.cells.reserve(strips * self.shares.len());
@@ -291,7 +291,7 @@ fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
 /// corners the edges are equal steps of the angle.
 fn strip_edges(band: &Band, strips_per_mm: f64) -> Vec<f64> {
     let grading = band.grading();
-    let strips = (strips_per_mm * (band.xi.high - band.xi.low)).round().max(2.0);
+    let strips = (strips_per_mm * band.xi.width()).round().max(2.0);
     let least = LEAST_STRIP / strips;
     let mut kept = vec![(0.0, band.xi.low)];
     for &corner in &band.corners {

@@ -127,9 +127,8 @@ impl Surface {
         };
         let [xi, eta] = [window.xi, window.eta].map(|side| side.with(0.0));
         let reach = eta.map(|eta| lofted.along_at(0.0, eta));
-        let steps = (reach.width() / CELL).ceil().max(1.0);
-        let step = |k: usize| reach.low + reach.width() * k as f64 / steps;
-        let mut places: Vec<f64> = (0..=steps as usize).map(step).chain([along]).collect();
+        let steps = (reach.width() / CELL).ceil().max(1.0) as usize;
+        let mut places: Vec<f64> = (0..=steps).map(|k| reach.step(k, steps)).chain([along]).collect();
         let ends = strips.iter().flat_map(|strip| strip.reach().ends()).filter(|end| reach.contains(*end));
         places.extend(ends);
         places.sort_by(f64::total_cmp);
@@ -255,7 +254,7 @@ fn check(placement: &Placement, window: &Window, tolerance: f64) -> Result<()> {
         finite("surface: window", v)?;
     }
     let wide = window.eta.magnitude() >= placement.rolling_radius();
-    if wide || window.xi.low >= window.xi.high || window.eta.low >= window.eta.high {
+    if wide || !window.xi.has_width() || !window.eta.has_width() {
         let found = format!("{window:?}");
         let expected = format!("ascending ends, |η| below {} mm", placement.rolling_radius());
         return Err(Error::new("surface: window", found, expected, "take the grid's window"));

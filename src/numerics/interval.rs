@@ -102,6 +102,18 @@ impl Interval {
         self.low <= number && number <= self.high
     }
 
+    /// Says whether a number lies between the ends and is neither of them.
+    #[inline(always)]
+    pub fn surrounds(self, number: f64) -> bool {
+        self.low < number && number < self.high
+    }
+
+    /// Says whether there is more than one number in the interval.
+    #[inline(always)]
+    pub fn has_width(self) -> bool {
+        self.low < self.high
+    }
+
     /// Says whether another interval lies in this one, common ends included.
     #[inline(always)]
     pub fn holds(self, other: Self) -> bool {
@@ -117,7 +129,7 @@ impl Interval {
     /// Says whether both intervals share more than one number.
     #[inline(always)]
     pub fn overlaps(self, other: Self) -> bool {
-        self.low.max(other.low) < self.high.min(other.high)
+        self.cut(other).has_width()
     }
 
     /// Says whether there is no number in the interval.
@@ -150,6 +162,18 @@ impl Interval {
     #[inline(always)]
     pub fn cut(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
+    }
+
+    /// Gives the distance between two intervals; 0 if they meet.
+    #[inline]
+    pub fn distance(self, other: Self) -> f64 {
+        (self.low - other.high).max(other.low - self.high).max(0.0)
+    }
+
+    /// Gives the k-th of n + 1 places in equal steps, from the lower end (0) to the upper one (n), both without rounding.
+    #[inline]
+    pub fn step(self, k: usize, n: usize) -> f64 {
+        if k == n { self.high } else { self.low + self.width() * k as f64 / n as f64 }
     }
 
     /// Gives what is below and what is above a number of the interval.
@@ -280,6 +304,14 @@ mod tests {
         assert_eq!((Interval::NONE.hull(some), Interval::around([])), (some, Interval::NONE));
         assert!(Interval::NONE.is_empty() && !some.meets(Interval::NONE) && some.holds(Interval::NONE));
         assert_eq!([-7.0, 0.5, 9.0].map(|number| some.nearest(number)), [-1.0, 0.5, 2.0]);
+        assert_eq!([0, 1, 2, 3].map(|k| some.step(k, 3)), [-1.0, 0.0, 1.0, 2.0]);
+        assert_eq!([some.distance(Interval::of(2.5)), some.distance(Interval::of(0.0))], [0.5, 0.0]);
+        assert!(some.surrounds(0.0) && !some.surrounds(2.0) && !Interval::of(0.0).has_width());
+        assert!(
+            some.overlaps(Interval::ALL)
+                && some.meets(Interval::of(2.0))
+                && !some.overlaps(Interval::of(0.0))
+        );
         assert!(some.nearest(f64::NAN).is_nan() && !some.contains(f64::NAN));
         assert_eq!(serde_json::to_string(&some).unwrap(), "[-1.0,2.0]");
     }

@@ -50,8 +50,7 @@ pub fn sign_changes(
         let place = |t: f64| interval.nearest(middle + half * t);
         let values = f(&lanes(|k| place(NODES[k])));
         batches += 1;
-        let inside = interval.low < middle && middle < interval.high;
-        let short = half <= shortest || !inside || batches > MOST_BATCHES;
+        let short = half <= shortest || !interval.surrounds(middle) || batches > MOST_BATCHES;
         if values.iter().any(|value| value.is_nan()) {
             if !short && values.iter().any(|value| !value.is_nan()) {
                 waiting.extend(interval.halves().map(|half| (half, noise)).into_iter().rev());

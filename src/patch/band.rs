@@ -80,12 +80,11 @@ impl Band {
             }
         }
         corners.push(self.xi.high);
-        let inside = |side: Interval| self.window.low < side.low && side.high < self.window.high;
         let zero = [0, 1].map(|end| {
             let side = self.sides[end];
-            side.low == side.high && (self.ends[end] == Some(End::Tip) || inside(side))
+            side.low == side.high && (self.ends[end] == Some(End::Tip) || self.window.surrounds(side.low))
         });
-        let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end].width() > 0.0;
+        let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end].has_width();
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
@@ -199,8 +198,7 @@ impl Band {
     ) -> [f64; N] {
         let grading = self.grading();
         let ends = self.stretches.iter().map(|stretch| stretch.xi.high).chain(self.corners.iter().copied());
-        let mut cuts: Vec<f64> =
-            ends.filter(|cut| xi.low < *cut && *cut < xi.high).chain([xi.high]).collect();
+        let mut cuts: Vec<f64> = ends.filter(|cut| xi.surrounds(*cut)).chain([xi.high]).collect();
         cuts.sort_by(f64::total_cmp);
         // The ends of the parameter are exactly 0 and 1, in spite of rounding.
         let parameter = |xi: f64| match self.xi.ends().iter().position(|end| *end == xi) {
@@ -335,5 +333,5 @@ pub(super) fn steps(section: &Section, xi: Interval, extent: f64) -> impl Iterat
     };
     let torn = (1..section.pieces.len()).filter(move |&k| torn(k));
     let ends = torn.flat_map(|k| [section.pieces[k - 1].xi.high, section.pieces[k].xi.low]);
-    ends.filter(move |end| xi.low < *end && *end < xi.high)
+    ends.filter(move |end| xi.surrounds(*end))
 }

@@ -123,11 +123,10 @@ impl Patch {
 
     /// Returns the components inside another window, or `None` if that window cuts a component.
     pub fn within(&self, window: &Window) -> Option<Self> {
-        let inside = |inner: Interval, outer: Interval| outer.low < inner.low && inner.high < outer.high;
         let mut components = Vec::new();
         for component in &self.components {
             let extent = component.extent();
-            if inside(extent.xi, window.xi) && inside(extent.eta, window.eta) {
+            if window.surrounds(&extent) {
                 components.push(component.clone());
             } else if extent.meets(window) {
                 return None;
@@ -395,7 +394,7 @@ fn graded(band: &Band, whole: f64) -> Vec<f64> {
     nodes.push(band.corners[0]);
     for (piece, t) in band.pieces().enumerate() {
         let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share * t.width()).round() as usize);
-        nodes.extend((1..n).map(|k| grading.xi(t.low + t.width() * k as f64 / n as f64)));
+        nodes.extend((1..n).map(|k| grading.xi(t.step(k, n))));
         nodes.push(band.corners[piece + 1]);
     }
     nodes.dedup();

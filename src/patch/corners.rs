@@ -30,12 +30,11 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
     }
     let frame = placement.wheel().section.frame;
     let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
-    let inside = |xi: f64| band.xi.low < xi && xi < band.xi.high;
     for (p, height) in placement.wheel().section.joints(band.xi.grown(far)) {
         let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
         if frame.sin == 0.0 || miss(0.0) >= 0.0 {
             if frame.sin == 0.0 {
-                corners.extend(inside(p).then_some(p));
+                corners.extend(band.xi.surrounds(p).then_some(p));
             }
             continue;
         }
@@ -47,7 +46,7 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
             high *= 2.0;
         }
         let root = bracketed(miss, 0.0, high).map(|e| p + e * frame.sin);
-        corners.extend(root.filter(|&xi| inside(xi)));
+        corners.extend(root.filter(|&xi| band.xi.surrounds(xi)));
     }
 }
 
@@ -56,7 +55,6 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
 pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
     let Some(skewed) = &outline.slicer.skewed else { return };
     let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail().section);
-    let inside = |xi: f64| band.xi.low < xi && xi < band.xi.high;
     skewed.valleys.circles(band.xi, eta, |place, [from, to]| {
         let depth = |t: f64| {
             let [xi, height] = place(t);
@@ -68,7 +66,7 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: Interval, corners:
             let here = depth(at(k));
             if before * here < 0.0 {
                 let root = bracketed(depth, at(k - 1), at(k)).map(|t| place(t)[0]);
-                corners.extend(root.filter(|&xi| inside(xi)));
+                corners.extend(root.filter(|&xi| band.xi.surrounds(xi)));
             }
             before = here;
         }

@@ -2,6 +2,7 @@
 
 use super::band::{Band, Turn, steps};
 use super::outline::{End, Outline};
+use super::skewed::slicer::between;
 use super::window::Window;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
@@ -72,7 +73,7 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
         let end = if b == reach.high { End::ProfileEnd } else { End::Window };
         bands.push(closed(outline, begin, (b, Some(end))));
     }
-    bands.retain(|band| band.xi.width() > 0.0);
+    bands.retain(|band| band.xi.has_width());
     (bands, places)
 }
 
@@ -98,10 +99,7 @@ fn closed(
     let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
     let sides = places.map(|(end, xi)| {
         let edges = outline.edges(None, xi).filter(|_| end != Some(End::Tip));
-        edges.map_or_else(
-            || Interval::of(outline.floor(None, xi)),
-            |[low, high]| Interval::new(low.eta, high.eta),
-        )
+        edges.map_or_else(|| Interval::of(outline.floor(None, xi)), between)
     });
     Band::new(Interval::new(from, to), [begin, end], sides, outline.window.eta)
 }

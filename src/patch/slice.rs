@@ -5,13 +5,14 @@
 
 use super::by_roots::ByRoots;
 use super::level::Level;
-use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed};
+use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed, between};
 use super::varying::Varying;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
-use crate::separation::wheel_surface::{SagittaPoint, Span, Surface};
+use crate::separation::span::{SagittaPoint, Span};
+use crate::separation::wheel_surface::Surface;
 use crate::separation::{Evaluator, midplane_gap};
 
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
@@ -109,7 +110,7 @@ impl<'a> Slicer<'a> {
             Some(gap) => gap.rail().joints(),
             None => self.placement.rail().section.joints(over).map(|(xi, _)| xi).collect(),
         };
-        joints.into_iter().filter(|xi| over.low < *xi && *xi < over.high).collect()
+        joints.into_iter().filter(|xi| over.surrounds(*xi)).collect()
     }
 
     /// Returns whether ξ is the arc length of the rail's surface.
@@ -155,7 +156,7 @@ impl<'a> Slicer<'a> {
             Some(skewed) => Some(skewed.lowest_valley(xi)?),
             None => None,
         };
-        self.edges(xi, valley).map(|[low, high]| Slice { eta: Interval::new(low.eta, high.eta) })
+        self.edges(xi, valley).map(|edges| Slice { eta: between(edges) })
     }
 
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`.

@@ -93,7 +93,7 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
             let rooted = root.map(|end| self.over_root(xi, end, noise)).filter(|(_, resolved)| *resolved);
             let count = stretches.len() + waiting.len() - first;
             let middle = xi.middle();
-            let short = xi.width() <= shortest || middle <= xi.low || middle >= xi.high;
+            let short = xi.width() <= shortest || !xi.surrounds(middle);
             if let Some((stretch, _)) = rooted {
                 stretches.push(stretch);
             } else if resolved || short || count > MOST_STRETCHES {

@@ -22,6 +22,12 @@ impl Window {
         self.xi.meets(other.xi) && self.eta.meets(other.eta)
     }
 
+    /// Tells whether another window lies inside this one and touches no edge of it.
+    pub fn surrounds(&self, other: &Self) -> bool {
+        let around = |own: Interval, other: Interval| own.low < other.low && other.high < own.high;
+        around(self.xi, other.xi) && around(self.eta, other.eta)
+    }
+
     /// Tells whether a point lies in the window, its edges included.
     pub fn contains(&self, xi: f64, eta: f64) -> bool {
         self.xi.contains(xi) && self.eta.contains(eta)

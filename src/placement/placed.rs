@@ -429,7 +429,7 @@ impl Placement {
     /// The ξ where both bodies have a surface in the midplane, outermost ends.
     pub fn overlap(&self) -> Option<Interval> {
         let both = self.rail.section.reach()?.cut(self.wheel.section.reach()?);
-        (both.width() > 0.0).then_some(both)
+        (both.has_width()).then_some(both)
     }
 
     /// All ξ inside (a, b) where either body changes its branch, ascending.

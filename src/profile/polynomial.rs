@@ -70,7 +70,7 @@ impl Polynomial {
 
     /// Tells whether the curve has a range and enough coefficients.
     pub(super) fn is_sound(&self) -> bool {
-        self.t.width() > 0.0 && self.x.len() >= 2 && !self.z.is_empty()
+        self.t.has_width() && self.x.len() >= 2 && !self.z.is_empty()
     }
 
     /// Returns the coefficients of x(t) and of z(t) \[mm\]. Each coefficient is a sum of two numbers: the rounded value and

@@ -53,7 +53,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
         let expected = "no pitch of wheels of one profile each";
         return Err(Error::new("wheelset: pitch", format!("{pitch} rad"), expected, "remove it"));
     }
-    if reach.low >= reach.high {
+    if !reach.has_width() {
         let found = "rails whose lists have no place in common";
         return Err(Error::new("rail", found, "lists that overlap along the track", "correct the offsets"));
     }

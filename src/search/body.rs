@@ -165,7 +165,7 @@ impl TreeBuilder {
             _ => return,
         };
         let angles = angles.cut(Interval::symmetric(FRAC_PI_2));
-        if angles.low >= angles.high {
+        if !angles.has_width() {
             return;
         }
         let ends =

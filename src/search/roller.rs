@@ -153,7 +153,7 @@ pub(super) fn at_own_turn(
         }
         last = Some((turn, beside));
         let next = turn - beside / slope;
-        let next = if ends.low < next && next < ends.high { next } else { ends.middle() };
+        let next = if ends.surrounds(next) { next } else { ends.middle() };
         if next == turn || next == ends.low || next == ends.high {
             return Some(seen);
         }

@@ -2,7 +2,7 @@
 //!
 //! | Equation | File |
 //! |---|---|
-//! | the wheel in sagitta form, u = e (2w + e) | `wheel_surface` |
+//! | the wheel in sagitta form, u = e (2w + e) | `wheel_surface`, over one branch `span` |
 //! | g(ξ), the midplane gap | `gap` |
 //! | the height of a wheel over the profile below it | `relief` |
 //! | s and the normals at one point | [`Evaluator`] |
@@ -27,6 +27,7 @@ mod plan;
 mod relief;
 mod rounding;
 mod samples;
+pub(crate) mod span;
 mod values;
 pub(crate) mod wheel_surface;
 

@@ -3,7 +3,8 @@
 use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
 
 use super::gap;
-use super::wheel_surface::{SagittaPoint, Span, Surface};
+use super::span::{SagittaPoint, Span};
+use super::wheel_surface::Surface;
 use crate::lofted::FramedLoft;
 use crate::placement::Placement;
 use crate::profile::Section;

@@ -127,5 +127,5 @@ fn nearest(piece: &Piece, end: usize, xi: &[f64], abscissa: impl Fn(f64) -> f64)
         xi.partition_point(|&xi| abscissa(xi) <= piece.xi.high).checked_sub(1)?
     };
     let x = abscissa(*xi.get(index)?);
-    (piece.xi.low <= x && x <= piece.xi.high).then_some(x)
+    piece.xi.contains(x).then_some(x)
 }

@@ -50,7 +50,7 @@ pub(super) fn laterals(states: &Break) -> Interval {
 
 /// Finds the states at both ends of a range \[mm\] under a yaw \[rad\], and all breaks in it. A range without width is one state.
 pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, range: Interval) -> Result<Row> {
-    if range.low >= range.high {
+    if !range.has_width() {
         let state = Sampler::new(system, asked, yaw).at(range.at(0.5), 0.0)?;
         return Ok(Row { yaw, ends: [state.clone(), state], breaks: Vec::new() });
     }

@@ -278,7 +278,7 @@ fn narrowed(sides: &mut [Vec<Mark>; 2], range: Interval) -> Interval {
     let narrow = Interval::new(low, behind.map_or(f64::INFINITY, |place| -place)).cut(range);
     let within = |mark: &&Mark| mark.1.low > narrow.low && mark.1.high < narrow.high;
     let inner = sides.each_ref().map(|marks| marks.iter().filter(within).copied().collect::<Vec<_>>());
-    if narrow.low >= narrow.high || changes(&inner[0]).eq(changes(&inner[1])) {
+    if !narrow.has_width() || changes(&inner[0]).eq(changes(&inner[1])) {
         return range;
     }
     *sides = inner;

@@ -85,10 +85,7 @@ impl Case {
 
     /// s − δ over a grid of n × n points, and its axes; infinite where a body has no surface.
     pub fn filled(&self, window: &Window, n: usize) -> Filled {
-        let axis = |side: Interval| -> Vec<f64> {
-            let at = |k: usize| side.low + side.width() * k as f64 / (n - 1) as f64;
-            (0..n).map(|k| if k + 1 == n { side.high } else { at(k) }).collect()
-        };
+        let axis = |side: Interval| (0..n).map(|k| side.step(k, n - 1)).collect::<Vec<f64>>();
         let (xi, eta) = (axis(window.xi), axis(window.eta));
         let depth = self.depths(&xi, &eta);
         Filled { xi, eta, depth }
@@ -276,7 +273,7 @@ pub struct Open {
 /// What a fill of such cells \[mm\] may miss of the area beside the ends of a component along ξ that are ends of a surface \[mm²\].
 fn beside_profile_ends(patch: &Patch, cell: f64) -> f64 {
     let ends = |c: &Component| c.ends.iter().filter(|end| **end == End::ProfileEnd).count();
-    patch.components.iter().map(|c| 0.5 * cell * (c.eta.high - c.eta.low) * ends(c) as f64).sum()
+    patch.components.iter().map(|c| 0.5 * cell * c.eta.width() * ends(c) as f64).sum()
 }
 
 /// Every point, the components, the area and the cuts of a patch against fills.

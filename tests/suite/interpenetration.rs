@@ -225,7 +225,7 @@ fn a_larger_approach_contains_the_smaller_patch() {
                 wide.is_some_and(|wide| wide.grown(SAME_END).contains(eta)),
                 "{name}: ({xi}, {eta}) outside {wide:?}"
             );
-            let of = large.components.iter().filter(|c| c.xi.low <= xi && xi <= c.xi.high).count();
+            let of = large.components.iter().filter(|c| c.xi.contains(xi)).count();
             assert_eq!(of, 1, "{name}: ξ = {xi} lies in {of} components");
         }
     }
@@ -275,7 +275,7 @@ fn a_tiny_approach_finds_the_tiny_patch_at_c() {
                 scaled.components.iter().find(|c| c.xi.low < 0.0 && c.xi.high > 0.0).map(|c| c.area);
             // Far inside both contact segments the patch is an ellipse, whose area goes with δ.
             let ratio = quarter.map(|q| c.area / q);
-            let smooth = c.ends == [End::Tip; 2] && c.xi.high - c.xi.low < 0.05;
+            let smooth = c.ends == [End::Tip; 2] && c.xi.width() < 0.05;
             assert!(
                 !smooth || ratio.is_some_and(|r| (r - 4.0).abs() < 1e-2),
                 "{} δ = {delta} χ = {skew}: {ratio:?}",

@@ -97,9 +97,7 @@ fn centroids_are_inside_and_give_the_first_moment() {
             let moment = |mesh: &StripMesh| {
                 mesh.cells.iter().map(|c| c.area * c.centroid[axis]).sum::<f64>() / patch.area()
             };
-            let size = patch
-                .extent()
-                .map_or(1.0, |w| if axis == 0 { w.xi[1] - w.xi[0] } else { w.eta[1] - w.eta[0] });
+            let size = patch.extent().map_or(1.0, |w| if axis == 0 { w.xi.width() } else { w.eta.width() });
             let difference = (moment(&coarse) - moment(&fine)).abs();
             assert!(difference < 1e-8 * size, "{name}: {axis} {difference:e} of {size}");
         }
@@ -176,8 +174,7 @@ fn covers(placement: &Placement, delta: f64, group: &GridGroup, axes: &Axes) -> 
         }
     }
     let (box_, window) = (&group.extent, axes.window());
-    let inside = |inner: Interval, outer: Interval| outer.low < inner.low && inner.high < outer.high;
-    empty && inside(box_.xi, window.xi) && inside(box_.eta, window.eta)
+    empty && window.surrounds(box_)
 }
 
 #[test]
@@ -191,7 +188,7 @@ fn grids_never_cut_the_patch() {
                 let axes = group.axes(spacing).expect("axes");
                 assert!(covers(&placement, delta, group, &axes), "{name}: {group:?}");
                 let extent = &group.extent;
-                let short = (extent.xi.high - extent.xi.low).min(extent.eta.high - extent.eta.low);
+                let short = extent.xi.width().min(extent.eta.width());
                 assert!(spacing.is_some() || short / axes.spacing[0] >= 16.0 - 1e-9, "{name}");
                 if placement.skew() == 0.0 {
                     let eta = &axes.eta;

@@ -204,7 +204,7 @@ fn a_wheel_on_its_flat_is_run_like_any_other() -> Result<()> {
     }
     let length = |run: &Run| {
         let extent = run.parts[0].analysis.patch.as_ref().unwrap().extent().unwrap();
-        extent.eta.high - extent.eta.low
+        extent.eta.width()
     };
     let lengths = [&round, &edge, &flat].map(length);
     assert!(

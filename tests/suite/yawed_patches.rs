@@ -31,7 +31,7 @@ const LONGEST: Duration = Duration::from_secs(20);
 /// All intervals of η in which s < δ, but for those between two of the points.
 fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, over: Interval, delta: f64) -> Vec<Interval> {
     let mut inside = |eta: f64| evaluator.separation(xi, eta) < delta;
-    let eta = |k: usize| over.low + over.width() * k as f64 / POINTS as f64;
+    let eta = |k: usize| over.step(k, POINTS);
     let mut intervals: Vec<Interval> = Vec::new();
     let mut before = inside(over.low);
     intervals.extend(before.then_some(over));
@@ -153,7 +153,7 @@ fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {
         let patch = check(&format!("yaw {yaw}"), &placement, 0.2);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         assert_eq!((c.ends, c.holes.len()), ([End::Tip; 2], 0), "yaw {yaw}");
-        let most = (0..400).map(|k| c.xi.low + (c.xi.high - c.xi.low) * (f64::from(k) + 0.5) / 400.0);
+        let most = (0..400).map(|k| c.xi.low + c.xi.width() * (f64::from(k) + 0.5) / 400.0);
         let most = most.map(|xi| sliced(&patch, xi).len()).max();
         assert_eq!(most, Some(2), "yaw {yaw}");
     }

@@ -129,9 +129,8 @@ pub(super) fn check_lofted(
     let other = other.and_then(|surface| Solid::new(surface, 2.0 * reach)).ok_or_else(bad)?;
     let (mut separation, mut normals) = (Vec::new(), Vec::new());
     let [mut no_surface, mut steep_or_end, mut surface_disputed] = [0; 3];
-    let place = |over: Interval, k: usize, n: usize| over.low + over.width() * k as f64 / (n - 1) as f64;
     for k in 0..GRID[0] * GRID[1] {
-        let at = [place(window.xi, k / GRID[1], GRID[0]), place(window.eta, k % GRID[1], GRID[1])];
+        let at = [window.xi.step(k / GRID[1], GRID[0] - 1), window.eta.step(k % GRID[1], GRID[1] - 1)];
         let found = answer(at[0], at[1]);
         let met = (own.met(at, found, &other), other.along_zeta(at[0], at[1]));
         match met {

@@ -180,8 +180,7 @@ fn sharpest_radius(profile: &Profile) -> f64 {
         Shape::Arc(arc) => arc.curvature().abs(),
         Shape::Polynomial(polynomial) => {
             let t = polynomial.range();
-            let place = |k: usize| t.low + t.width() * k as f64 / (SAMPLES - 1) as f64;
-            (0..SAMPLES).map(|k| polynomial.curvature(place(k)).abs()).fold(0.0, f64::max)
+            (0..SAMPLES).map(|k| polynomial.curvature(t.step(k, SAMPLES - 1)).abs()).fold(0.0, f64::max)
         }
     };
     1.0 / profile.segments().iter().map(curvature).fold(0.0, f64::max)

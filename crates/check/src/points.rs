@@ -22,12 +22,9 @@ pub(super) fn spread_points(
     rail: &SampledSurface,
     wheel: &SampledSurface,
 ) -> Vec<[f64; 2]> {
-    let [xi, eta] = [request.window.xi, request.window.eta].map(Interval::from);
-    let at = |range: Interval, k: usize, n: usize| {
-        if k + 1 == n { range.high } else { range.low + range.width() * k as f64 / (n - 1) as f64 }
-    };
+    let (xi, eta) = (request.window.xi, request.window.eta);
     let mut all: Vec<[f64; 2]> = (0..GRID[0] * GRID[1])
-        .map(|k| [at(xi, k / GRID[1], GRID[0]), at(eta, k % GRID[1], GRID[1])])
+        .map(|k| [xi.step(k / GRID[1], GRID[0] - 1), eta.step(k % GRID[1], GRID[1] - 1)])
         .collect();
     all.extend(joints(rail, eta));
     all.extend(joints(wheel, eta));
@@ -42,7 +39,7 @@ pub(super) fn spread_points(
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     let Some(overlap) = placement.overlap() else { return Vec::new() };
     let over = request.window.xi.cut(overlap);
-    if over.low >= over.high {
+    if !over.has_width() {
         return Vec::new();
     }
     let mut slicer = Slicer::new(placement, request.approach);
@@ -52,10 +49,7 @@ fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
         .filter(|(s, _)| !s.is_nan())
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let mut all: Vec<[f64; 2]> = deepest.iter().map(|&(_, xi)| [xi, 0.0]).collect();
-    let columns: Vec<f64> = (0..=SLICES)
-        .map(|k| over.low + over.width() * k as f64 / SLICES as f64)
-        .chain(deepest.map(|d| d.1))
-        .collect();
+    let columns: Vec<f64> = (0..=SLICES).map(|k| over.step(k, SLICES)).chain(deepest.map(|d| d.1)).collect();
     let mut depths: Vec<(f64, f64)> = columns.iter().map(|&xi| (xi, slicer.depth(xi))).collect();
     depths.sort_by(|a, b| a.0.total_cmp(&b.0));
     for pair in depths.windows(2).filter(|pair| (pair[0].1 < 0.0) != (pair[1].1 < 0.0)) {

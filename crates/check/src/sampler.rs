@@ -80,7 +80,7 @@ impl SampledCurve {
     fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
         let range = polynomial.range();
         for k in 0..=8 {
-            let t = range.low + range.width() * f64::from(k) / 8.0;
+            let t = range.step(k, 8);
             let speed = self.speed(t - range.low);
             self.scale = self.scale.min((polynomial.curvature(t) * speed).abs().recip());
         }

@@ -1,5 +1,6 @@
-//! Reads FROM:TO:STEP, the places of a sweep or a march.
+//! Reads FROM:TO, a range, and FROM:TO:STEP, the places of a sweep or a march.
 
+use wheelrail::Interval;
 use wheelrail::error::{Error, Result};
 
 /// Most positions of one sweep or march. They and their results take a GiB.
@@ -10,6 +11,19 @@ pub(super) const FARTHEST: f64 = 1e9;
 
 /// Most decimals with which a number is treated as a decimal one. Doubles of a millimetre and more have no more digits.
 const MOST_DECIMALS: i32 = 15;
+
+/// Reads FROM:TO; `example` is what an error advises.
+pub(super) fn interval((unit, example): (&str, &str), option: &str, text: &str) -> Result<Interval> {
+    let bad =
+        || Error::new(option, text, format!("FROM:TO in {unit}"), format!("for example {option} {example}"));
+    numbers::<2>(text).map(Interval::from).ok_or_else(bad)
+}
+
+/// Reads N numbers with colons between; `None` of anything else.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>()?;
+    parts.try_into().ok()
+}
 
 /// Reads FROM:TO:STEP, both ends included. Each position is the double nearest to its decimal number, so that it is printed
 /// as that number.
@@ -23,10 +37,7 @@ pub(super) fn range_in((unit, example): (&str, &str), option: &str, text: &str) 
         let expected = format!("FROM:TO:STEP in {unit} with FROM <= TO within ±{FARTHEST:e} and STEP > 0");
         Error::new(option, text, expected, format!("for example {option} {example}"))
     };
-    let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
-    let Some([from, to, step]) = parts.and_then(|parts| <[f64; 3]>::try_from(parts).ok()) else {
-        return Err(bad());
-    };
+    let Some([from, to, step]) = numbers(text) else { return Err(bad()) };
     if !(-FARTHEST <= from && from <= to && to <= FARTHEST && step.is_finite() && step > 0.0) {
         return Err(bad());
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, counted, folder_of, print};
-use wheelrail::Interval;
+use crate::range::interval;
 use wheelrail::case::{TABLE_FOLDER, table as tabulate, write_table};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::Folder;
@@ -38,9 +38,8 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
     let progress = Progress::of("table", "scene");
     let path = arguments.scene.as_path();
     let scene = scene::load(path)?;
-    let lateral = range("--lateral", &arguments.lateral, "FROM:TO in mm", "-9:9")?;
-    let yaw =
-        arguments.yaw.as_ref().map(|yaw| range("--yaw", yaw, "FROM:TO in rad", "-0.02:0.02")).transpose()?;
+    let lateral = interval(("mm", "-9:9"), "--lateral", &arguments.lateral)?;
+    let yaw = arguments.yaw.as_ref().map(|yaw| interval(("rad", "-0.02:0.02"), "--yaw", yaw)).transpose()?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
     let default = || PathBuf::from("output").join(format!("{name}-table"));
     let target = arguments.out.clone().unwrap_or_else(default);
@@ -58,15 +57,6 @@ pub(super) fn table(arguments: &TableArguments) -> Result<Outcome> {
     drop(progress);
     remarks(&made).iter().for_each(|remark| complain(&format!("warning: table: {remark}")));
     print(&format!("{}{}\n", about(&made), target.display()))
-}
-
-/// Reads FROM:TO.
-fn range(flag: &str, text: &str, expected: &str, example: &str) -> Result<Interval> {
-    let parts = text.split(':').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f64>>>();
-    parts
-        .and_then(|parts| <[f64; 2]>::try_from(parts).ok())
-        .map(Interval::from)
-        .ok_or_else(|| Error::new(flag, text, expected, format!("for example {flag} {example}")))
 }
 
 /// Says what is in the table.

@@ -45,7 +45,7 @@ impl Patch {
     fn grid(&self, spacing: Option<[f64; 2]>) -> wheelrail::Result<Axes> {
         let groups = groups(&self.patch, 0.0, spacing);
         // The part that holds C, or else the first.
-        let holds = |group: &&GridGroup| group.extent.xi.low <= 0.0 && 0.0 <= group.extent.xi.high;
+        let holds = |group: &&GridGroup| group.extent.xi.contains(0.0);
         let Some(group) = groups.iter().find(holds).or(groups.first()) else {
             let (found, expected) = ("an empty patch", "a patch that the axes can be sized by");
             return Err(Error::new("patch", found, expected, "give a larger approach, or axes of your own"));

@@ -33,7 +33,7 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: Interval) -> Ev
         for xi in skewed.valleys.creases[crease].xi.ends() {
             // Where s is above δ, nothing begins or ends.
             let above = skewed.depth(crease, xi) > 0.0;
-            events.xi.extend((!above && range.low < xi && xi < range.high).then_some(xi));
+            events.xi.extend((!above && range.surrounds(xi)).then_some(xi));
         }
         intervals.clear();
         let matters = |s: Interval| s.low < approach && (is_valley || s.high > approach);

@@ -5,7 +5,7 @@
 //! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
-use super::slicer::Edge;
+use super::slicer::between;
 use crate::numerics::interval::Interval;
 use crate::patch::band::{Band, Turn, steps};
 use crate::patch::outline::{End, Outline};
@@ -80,7 +80,7 @@ fn searched(outline: &Outline<'_>) -> Option<Interval> {
     let creases = &outline.slicer.skewed.as_ref()?.valleys.creases;
     let valleys = creases.iter().filter(|crease| crease.is_valley);
     let under = valleys.fold(Interval::NONE, |under, crease| under.hull(crease.xi));
-    Some(outline.window.xi.cut(reach).cut(under)).filter(|over| over.width() > 0.0)
+    Some(outline.window.xi.cut(reach).cut(under)).filter(|over| over.has_width())
 }
 
 /// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
@@ -115,11 +115,6 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
         group.into_iter().map(|valley| valley.crease).collect()
     };
     groups.into_iter().map(deepest_first).collect()
-}
-
-/// Returns the interval of η between two edges \[mm\].
-fn between([low, high]: [Edge; 2]) -> Interval {
-    Interval::new(low.eta, high.eta)
 }
 
 impl LaneWalk<'_, '_> {

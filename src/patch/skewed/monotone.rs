@@ -50,14 +50,14 @@ pub(crate) fn monotone(
         for (index, piece) in pieces.take_while(|(_, piece)| piece.xi.low < over.high) {
             let bounds = rail.slopes(index);
             let over = over.cut(piece.xi);
-            if over.low >= over.high {
+            if !over.has_width() {
                 continue;
             }
             let (slopes, upright) = (wheel + -bounds, bounds.magnitude().is_infinite());
             let stretch = RailStretch { valleys, leg, rail: &rail.branches[piece.branch], slopes, upright };
             turns.clear();
             if stretch.turns(over, &matters, &mut turns) {
-                turns.retain(|turn| over.low < *turn && *turn < over.high);
+                turns.retain(|turn| over.surrounds(*turn));
                 turns.sort_by(f64::total_cmp);
                 let mut left = over.low;
                 for &turn in turns.iter().chain([&over.high]) {

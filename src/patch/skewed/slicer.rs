@@ -6,6 +6,7 @@
 
 use super::circle::BESIDE;
 use super::valleys::{Spot, Valleys};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
@@ -38,6 +39,11 @@ pub(crate) struct Edge {
     pub(crate) eta: f64,
     /// Whether the wheel's surface ends or steps here, so that s jumps over δ.
     pub(in crate::patch) ledge: bool,
+}
+
+/// Returns the interval of η between the ends of a slice \[mm\].
+pub(in crate::patch) fn between([low, high]: [Edge; 2]) -> Interval {
+    Interval::new(low.eta, high.eta)
 }
 
 /// Finds the slices under a skewed wheel at one approach.

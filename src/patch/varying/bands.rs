@@ -30,7 +30,7 @@ pub(in crate::patch) fn bands(
         bands[*lane].valleys = vec![(bands[*lane].xi.high, vec![*lane])];
     }
     let turns = turns.into_iter().map(|(lane, xi)| Turn { valley: Some(lane), xi, depth: f64::NAN });
-    (bands.into_iter().filter(|band| band.xi.width() > 0.0).collect(), turns.collect())
+    (bands.into_iter().filter(|band| band.xi.has_width()).collect(), turns.collect())
 }
 
 /// Joins the intervals of successive lines to bands.

@@ -105,7 +105,7 @@ impl<'a> Varying<'a> {
             None => placement.lofted().and_then(|body| body.reach(eta)),
         };
         let over = reach.map(|reach| window.xi.cut(reach));
-        let Some(xi) = over.filter(|xi| xi.width() > 0.0 && eta.width() > 0.0) else { return Vec::new() };
+        let Some(xi) = over.filter(|xi| xi.has_width() && eta.has_width()) else { return Vec::new() };
         let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.whole_line(xi, eta)).collect();
         self.refined(lines)
     }
@@ -305,15 +305,13 @@ fn beside(rows: &[(f64, LineSlice)], xi: f64) -> [usize; 2] {
 /// Adds points over an interval and beyond.
 fn spread(eta: Interval, out: &mut Vec<f64>) {
     let wide = eta.grown(BEYOND * eta.width());
-    out.extend((0..=POINTS).map(|k| wide.low + wide.width() * k as f64 / POINTS as f64));
+    out.extend((0..=POINTS).map(|k| wide.step(k, POINTS)));
 }
 
 /// Places in steps over an interval, with its ends; nearer to each other around 0 if that lies inside.
 fn places(over: Interval, step: f64) -> Vec<f64> {
     let count = (over.width() / step).ceil().max(1.0) as usize;
-    let place = |k: usize| over.low + over.width() * k as f64 / count as f64;
-    // The last one without rounding, which would push it out of the interval.
-    let mut out: Vec<f64> = (0..count).map(place).chain([over.high]).collect();
+    let mut out: Vec<f64> = (0..=count).map(|k| over.step(k, count)).collect();
     out.push(0.0);
     out.extend((0..HALVINGS).flat_map(|k| [1.0, -1.0].map(|sign| sign * step * 0.5f64.powi(k))));
     out.retain(|place| over.contains(*place));

@@ -49,7 +49,7 @@ pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f
         };
         sign_changes(slopes, over, SLOPE_NOISE, &mut found);
     }
-    found.retain(|xi| a < *xi && *xi < b);
+    found.retain(|&xi| over.surrounds(xi));
     found
 }
 
@@ -88,14 +88,14 @@ pub fn parallel_to(branch: &Branch, n: [f64; 2], over: Interval) -> Vec<f64> {
                 (0..dx.len().max(dz.len())).map(|k| term(&dx, k) * n[1] - term(&dz, k) * n[0]).collect();
             let ends = p.parameters(over);
             let size = value(&across.iter().map(|c| c.abs()).collect::<Vec<_>>(), ends.magnitude());
-            if ends.width() > 0.0 {
+            if ends.has_width() {
                 let many = |t: &Lanes| t.map(|t| value(&across, t));
                 sign_changes(many, ends, f64::EPSILON * size, &mut found);
             }
             found.iter_mut().for_each(|t| *t = value(&p.xi, *t));
         }
     }
-    found.retain(|&xi| over.low < xi && xi < over.high);
+    found.retain(|&xi| over.surrounds(xi));
     found
 }
 

@@ -142,7 +142,7 @@ impl Branch {
             if begins { start.x } else { abscissa(sines[0]) },
             if ends { end.x } else { abscissa(sines[1]) },
         );
-        if xi.low >= xi.high {
+        if !xi.has_width() {
             return None;
         }
         let curvature = arc.curvature();

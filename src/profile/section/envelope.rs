@@ -183,7 +183,7 @@ fn outermost(
 fn push(out: &mut Vec<(Interval, usize)>, xi: Interval, branch: usize) {
     match out.last_mut() {
         Some((before, last)) if *last == branch && before.high == xi.low => before.high = xi.high,
-        _ if xi.width() > 0.0 => out.push((xi, branch)),
+        _ if xi.has_width() => out.push((xi, branch)),
         _ => {}
     }
 }

@@ -47,7 +47,7 @@ fn rising_intervals(slope: &[f64], rounding: f64, over: Interval) -> Vec<Interva
     sign_changes(slope, rounding, over, 40, &mut cuts);
     cuts.push(over.high);
     let between = cuts.windows(2).map(|pair| Interval::new(pair[0], pair[1]));
-    parts.extend(between.filter(|part| part.width() > 0.0 && value(slope, part.middle()) > 0.0));
+    parts.extend(between.filter(|part| part.has_width() && value(slope, part.middle()) > 0.0));
     parts
 }
 

@@ -293,7 +293,7 @@ impl<'a> LoftedSearch<'a> {
         for (strip, own) in pair.loft.strips.iter().enumerate() {
             for bay in own.bays() {
                 let y = bay.y().cut(reach);
-                if y.low < y.high {
+                if y.has_width() {
                     let shares = Interval::new(0.0, 1.0);
                     let part = Part { strip, bay: bay.index(), node: 1, shares, y };
                     self.add(over, part, 0, lowest, within);

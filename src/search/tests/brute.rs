@@ -71,9 +71,8 @@ type Square = (f64, Interval, Interval);
 
 /// Returns the twelve lowest local minima of a grid, each with the interval of its neighbours.
 fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: Interval, omega: Interval, n: [usize; 2]) -> Vec<Square> {
-    let at = |range: Interval, k: usize, n: usize| range.low + range.width() * k as f64 / n as f64;
     let values: Vec<Vec<f64>> =
-        (0..=n[0]).map(|i| (0..=n[1]).map(|j| gap(at(x, i, n[0]), at(omega, j, n[1]))).collect()).collect();
+        (0..=n[0]).map(|i| (0..=n[1]).map(|j| gap(x.step(i, n[0]), omega.step(j, n[1]))).collect()).collect();
     let mut cells = Vec::new();
     for i in 0..=n[0] {
         for j in 0..=n[1] {
@@ -84,8 +83,8 @@ fn best_cells(gap: &impl Fn(f64, f64) -> f64, x: Interval, omega: Interval, n: [
             if here.is_finite() && least {
                 cells.push((
                     here,
-                    Interval::new(at(x, i0, n[0]), at(x, i1, n[0])),
-                    Interval::new(at(omega, j0, n[1]), at(omega, j1, n[1])),
+                    Interval::new(x.step(i0, n[0]), x.step(i1, n[0])),
+                    Interval::new(omega.step(j0, n[1]), omega.step(j1, n[1])),
                 ));
             }
         }

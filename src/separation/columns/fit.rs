@@ -12,7 +12,8 @@ use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest};
 use crate::numerics::nan_max;
 use crate::separation::demand::{Demand, first_count};
 use crate::separation::relief::Relief;
-use crate::separation::wheel_surface::{SagittaPoints, Span, SpanLanes, Surface};
+use crate::separation::span::{SagittaPoints, Span, SpanLanes};
+use crate::separation::wheel_surface::Surface;
 
 /// Fits polynomials to columns of a relief: for strips, for columns in no strip, and for the measurement of errors.
 #[derive(Debug)]

@@ -4,7 +4,8 @@ use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{Branches, Piece, Section};
 use crate::separation::gap::{contact_gap, contact_gaps};
 use crate::separation::relief::Relief;
-use crate::separation::wheel_surface::{SpanLanes, Surface};
+use crate::separation::span::SpanLanes;
+use crate::separation::wheel_surface::Surface;
 
 /// Most spans of a column that are computed for several columns at once.
 pub const MOST_SPANS: usize = 3;
@@ -150,7 +151,7 @@ impl<'a> Neighbours<'a> {
 fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
     let before = rest.iter().take_while(|piece| piece.xi.high < xi).count();
     *rest = &rest[before..];
-    rest.first().filter(|piece| piece.xi.low < xi && xi < piece.xi.high)
+    rest.first().filter(|piece| piece.xi.surrounds(xi))
 }
 
 /// Finds the pieces of rail and wheel for each ξ whose column lies over one piece of each body.

@@ -13,7 +13,8 @@ use crate::profile::{BranchPoints, Piece};
 use crate::separation::demand::{Demand, ROUNDING_LEVEL};
 use crate::separation::gap::contact_gap;
 use crate::separation::relief::Relief;
-use crate::separation::wheel_surface::{SpanLanes, Surface};
+use crate::separation::span::SpanLanes;
+use crate::separation::wheel_surface::Surface;
 
 /// Share of an interval's largest |s| below which an interpolated s would not have the promised thirteen digits.
 pub const SMALL_SHARE: f64 = 1.0 / 64.0;

@@ -62,7 +62,7 @@ fn breaks(relief: &Relief<'_>, u_max: f64, window: Interval) -> Vec<f64> {
         // not reach the edge.
         joint + wheel.sin * u_max / (w + (w * w - u_max).sqrt())
     };
-    let inside = |xi: &f64| window.low < *xi && *xi < window.high;
+    let inside = |xi: &f64| window.surrounds(*xi);
     // Because e ≤ w, e² ≤ u: no joint moves farther than this along ξ before it leaves.
     let far = wheel.sin.abs() * u_max.sqrt();
     let mut ends = Vec::with_capacity(MANY);
@@ -90,7 +90,7 @@ impl Maker<'_, '_> {
     fn divide(&mut self, xi: Interval, columns: &[f64]) {
         let middle = xi.middle();
         // An interval between two neighbouring numbers has no halves.
-        if columns.len() < LEAST_COLUMNS || middle <= xi.low || middle >= xi.high {
+        if columns.len() < LEAST_COLUMNS || !xi.surrounds(middle) {
             return;
         }
         // The halves of such a short interval would have too few columns for strips.

@@ -9,7 +9,8 @@ use super::strips::inside;
 use crate::numerics::chebyshev;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
-use crate::separation::wheel_surface::{SagittaPoints, Surface};
+use crate::separation::span::SagittaPoints;
+use crate::separation::wheel_surface::Surface;
 
 /// Places in a span, as shares of its u, at which the truncation error of a single column is measured. The end of the span
 /// is measured, too.

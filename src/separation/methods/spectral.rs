@@ -10,8 +10,8 @@ use crate::separation::columns::neighbours::MOST_SPANS;
 use crate::separation::columns::skewed;
 use crate::separation::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
 use crate::separation::kernel::Kernel;
+use crate::separation::span::Span;
 use crate::separation::values::{LINE, Residence, lead};
-use crate::separation::wheel_surface::Span;
 
 /// Spectral columns that keep a demanded accuracy.
 #[derive(Debug)]

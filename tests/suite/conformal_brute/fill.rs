@@ -18,10 +18,7 @@ pub struct Filled {
 impl Filled {
     /// Fills n × n points of a window; infinite where t is undefined.
     pub fn new(gap: &NormalGap<'_>, approach: f64, window: &Window, n: usize) -> Self {
-        let axis = |side: Interval| -> Vec<f64> {
-            let at = |k: usize| side.low + side.width() * k as f64 / (n - 1) as f64;
-            (0..n).map(|k| if k + 1 == n { side.high } else { at(k) }).collect()
-        };
+        let axis = |side: Interval| (0..n).map(|k| side.step(k, n - 1)).collect::<Vec<f64>>();
         let (sigma, eta) = (axis(window.xi), axis(window.eta));
         let mut depth = vec![0.0; n * n];
         fill_normal_gap(gap, &sigma, &EtaAxis::new(&eta), TOLERANCE, &mut depth);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::options::{BodyOption, MeasuredArguments, one_of};
 use super::source::{Source, SourceArguments};
+use crate::range::interval;
 use wheelrail::error::{Error, Result};
 use wheelrail::measure::MeasureOptions;
 use wheelrail::measured::{CurveKind, Options};
@@ -83,7 +84,11 @@ impl SeveralArguments {
     pub(super) fn aligned(&self, options: MeasureOptions) -> Result<MeasureOptions> {
         Ok(MeasureOptions {
             align: self.align.as_deref().map(|text| one_of("--align", text)).transpose()?,
-            unworn: self.unworn.iter().map(|text| range(text).map(Into::into)).collect::<Result<_>>()?,
+            unworn: self
+                .unworn
+                .iter()
+                .map(|text| interval(("mm", "-36:-30"), "--unworn", text))
+                .collect::<Result<_>>()?,
             ..options
         })
     }
@@ -105,14 +110,5 @@ impl SeveralArguments {
             }
         }
         Ok(side)
-    }
-}
-
-/// Reads a range "from:to".
-fn range(text: &str) -> Result<[f64; 2]> {
-    let numbers: Option<Vec<f64>> = text.split(':').map(|part| part.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some([from, to]) => Ok([*from, *to]),
-        _ => Err(Error::new("--unworn", format!("\"{text}\""), "a range FROM:TO in mm", "give -36:-30")),
     }
 }

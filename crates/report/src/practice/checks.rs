@@ -174,7 +174,7 @@ fn patch(
     }
     // At the end of a surface the flood fill has half a cell too much or too little.
     let ends = |part: &Component| part.ends.iter().filter(|end| **end == End::ProfileEnd).count() as f64;
-    let beside = |part: &Component| 0.5 * fill.step * ends(part) * (part.eta.high - part.eta.low);
+    let beside = |part: &Component| 0.5 * fill.step * ends(part) * part.eta.width();
     let beside: f64 = patch.components.iter().map(beside).sum();
     let area = ((patch.area() - fill.area).abs() - beside).max(0.0) / fill.area;
     row.area = row.area.max(area);

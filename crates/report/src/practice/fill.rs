@@ -31,14 +31,13 @@ pub(super) fn filled(placement: &Placement, approach: f64, window: &Window) -> F
     let sides = [window.xi, window.eta].map(Interval::width);
     let step = sides[0].min(sides[1]) / FEWEST;
     let counts = sides.map(|side| (side / step).ceil().clamp(2.0, MOST) as usize + 1);
-    let at = |side: Interval, k: usize, n: usize| side.low + side.width() * k as f64 / (n - 1) as f64;
-    let eta: Vec<f64> = (0..counts[1]).map(|k| at(window.eta, k, counts[1])).collect();
+    let eta: Vec<f64> = (0..counts[1]).map(|k| window.eta.step(k, counts[1] - 1)).collect();
     let mut evaluator = Evaluator::new(placement);
     let mut s = vec![f64::NAN; counts[0] * counts[1]];
     // Without skew the patch lies over the midplane's overlap.
     let over = if placement.skew() == 0.0 { placement.overlap() } else { Some(window.xi) };
     for (k, column) in s.chunks_exact_mut(counts[1]).enumerate() {
-        let xi = at(window.xi, k, counts[0]);
+        let xi = window.xi.step(k, counts[0] - 1);
         if over.is_some_and(|over| over.contains(xi)) {
             evaluator.column(xi, &eta, column);
         }
