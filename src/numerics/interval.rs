@@ -188,15 +188,15 @@ impl Interval {
         Self::new(self.low - margin, self.high + margin)
     }
 
-    /// Gives the interval between what a monotone function makes of the ends, as `of(low)` and `of(high)` in this order.
+    /// Gives the interval from `of(low)` to `of(high)`: the image under a function that ascends. One that descends swaps the ends.
     #[inline(always)]
     pub fn map(self, mut of: impl FnMut(f64) -> f64) -> Self {
         Self::new(of(self.low), of(self.high))
     }
 
-    /// Divides all numbers of the interval by those of a positive one.
+    /// Divides every number of the interval by every number of a positive one.
     #[inline]
-    pub fn over(self, positive: Self) -> Self {
+    pub fn quotient(self, positive: Self) -> Self {
         self * Self::new(positive.high.recip(), positive.low.recip())
     }
 }
@@ -288,7 +288,7 @@ mod tests {
             {
                 assert!(product.grown(1e-15).contains(p * q), "{a:?} * {b:?} = {product:?}, not {}", p * q);
                 assert!((a + -b).grown(1e-15).contains(p - q), "{a:?} - {b:?}");
-                assert!(b.low <= 0.0 || a.over(b).grown(1e-14).contains(p / q), "{a:?} / {b:?}");
+                assert!(b.low <= 0.0 || a.quotient(b).grown(1e-14).contains(p / q), "{a:?} / {b:?}");
             }
             let ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
             assert!(

@@ -323,7 +323,7 @@ fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f6
     [middle - half, middle + half]
 }
 
-/// Returns the ξ inside (a, b) at which a body's surface steps or ends because its profile overhangs. `extent` is that of
+/// Returns the ξ between the ends of a range \[mm\] at which a body's surface steps or ends because its profile overhangs. `extent` is that of
 /// the profile.
 pub(super) fn steps(section: &Section, xi: Interval, extent: f64) -> impl Iterator<Item = f64> {
     let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;

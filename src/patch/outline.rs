@@ -47,7 +47,8 @@ impl<'a> Outline<'a> {
         self.clipped(edges)
     }
 
-    /// Returns all ξ inside (a, b) at which s along the line of constant η may turn or step \[mm\], ascending.
+    /// Returns both ends of a range of ξ \[mm\], and all ξ between them at which s along the line of constant η may turn or step,
+    /// ascending.
     pub(super) fn turns_along(&mut self, eta: f64, over: Interval) -> Vec<f64> {
         let placement = self.slicer.placement();
         let (turned, wheel) = (Turned::new(placement), &placement.wheel().section);

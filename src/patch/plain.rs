@@ -104,8 +104,8 @@ fn closed(
     Band::new(Interval::new(from, to), [begin, end], sides, outline.window.eta)
 }
 
-/// Returns a, b, and all ξ between them where the depth may turn: joints and stationary points. The depth is monotone
-/// between neighbours.
+/// Returns both ends of a range of ξ \[mm\], and all ξ between them where the depth may turn: joints and stationary points. The
+/// depth is monotone between neighbours.
 fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
     let [a, b] = over.ends();
     let over_rail = outline.slicer.is_over_rail();

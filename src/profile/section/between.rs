@@ -70,10 +70,10 @@ impl pulp::WithSimd for SlopeDifferences<'_> {
     }
 }
 
-/// Returns all ξ inside (a, b) \[mm\] where a branch has the direction of a line \[n_ξ, n_ζ\], ascending.
+/// Returns all ξ between the ends of a range \[mm\] where a branch has the direction of a line \[n_ξ, n_ζ\], ascending.
 ///
 /// Method: on an arc the sine of the tangent angle is linear in ξ. On a polynomial it is where the component across the line
-/// changes its sign. Degenerate case: a branch that has the direction everywhere gives the middle of the interval.
+/// changes its sign. Degenerate case: a branch that has the direction everywhere gives the middle of the range.
 pub fn parallel_to(branch: &Branch, n: [f64; 2], over: Interval) -> Vec<f64> {
     let mut found = Vec::new();
     match &branch.shape {

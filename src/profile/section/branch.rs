@@ -427,8 +427,8 @@ impl Branch {
         self.station_and_curvature(self.parameter(xi)).1
     }
 
-    /// Computes bounds of ζ′ over an interval of ξ that enclose every value; of a polynomial over all of it, where they are known. They are
-    /// infinite where the branch is vertical.
+    /// Computes bounds of ζ′ over a range of ξ \[mm\]: no slope lies beyond them. A polynomial's are those of the whole branch, where
+    /// they are known. They are infinite where the branch is vertical.
     pub fn slope_bounds(&self, xi: Interval) -> Interval {
         match &self.shape {
             BranchShape::Arc(_) => self.derivative_bounds(xi)[0],
@@ -436,8 +436,8 @@ impl Branch {
         }
     }
 
-    /// Computes bounds of ζ′ and of ζ″ \[1/mm\] over an interval of ξ that enclose every value. They are infinite where the branch
-    /// is vertical.
+    /// Computes bounds of ζ′ and of ζ″ \[1/mm\] over a range of ξ \[mm\]: no value lies beyond them. They are infinite where the
+    /// branch is vertical.
     pub fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
         match &self.shape {
             BranchShape::Arc(arc) => {

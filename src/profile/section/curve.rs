@@ -42,7 +42,7 @@ impl PolynomialBranch {
         points::parameters(self.xi.as_slice(), range, &[xi], guess).map_or(f64::NAN, |[t]| t)
     }
 
-    /// Finds t over an interval of ξ.
+    /// Finds the range of t over a range of ξ \[mm\].
     pub(super) fn parameters(&self, xi: Interval) -> Interval {
         xi.map(|xi| self.parameter(xi))
     }
@@ -67,7 +67,7 @@ impl PolynomialBranch {
     pub(super) fn rates(&self, xi: Interval) -> ([Interval; 2], Interval) {
         let t = self.parameters(xi);
         let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), t));
-        (rates, if run.low <= 0.0 { Interval::ALL } else { rise.over(run) })
+        (rates, if run.low <= 0.0 { Interval::ALL } else { rise.quotient(run) })
     }
 
     pub(super) fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
@@ -78,6 +78,6 @@ impl PolynomialBranch {
         let t = self.parameters(xi);
         let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), t));
         let turn = sag * run + -(bend * rise);
-        [slope, turn.over(run.map(|v| v.powi(3)))]
+        [slope, turn.quotient(run.map(|v| v.powi(3)))]
     }
 }

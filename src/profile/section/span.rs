@@ -53,7 +53,7 @@ impl Span {
         let (along, across): (Vec<_>, Vec<_>) =
             both.map(|[dx, dz]| (dx * cos + dz * sin, dz * cos - dx * sin)).unzip();
         let (run, rise) = (range(&along, t), range(&across, t));
-        let spread = (run.low > 0.0).then(|| rise.over(run));
+        let spread = (run.low > 0.0).then(|| rise.quotient(run));
         Self {
             ends: t.ends().map(|t| [&polynomial.x, &polynomial.z].map(|c| exact_value(c, t.into()))),
             middle: [cos, sin],
