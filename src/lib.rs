@@ -27,22 +27,109 @@
 //!
 //! The Report chooses contact points; [`search`] finds them. [`measured`] reads profiles from instruments' files.
 //!
-//! # In eight lines
+//! # Five programs
+//!
+//! The separation around a contact, over a grid, and the patch there:
 //!
 //! ```
-//! use wheelrail::{Evaluator, ONE_CONTACT, Pair, Patch, Pose, ProfilePair, Selection, Window, inclination, standards};
+//! use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+//! use wheelrail::{Pair, Patch, Pose, Window, first_touch, inclination, mesh::equal_steps, standards};
 //!
 //! let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
 //! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
-//! let profiles = ProfilePair::new(&pair)?;
-//! let mut search = profiles.search();
-//! let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: ONE_CONTACT });
-//! let placement = touch.expect("a wheel over its rail").contacts[0].placed(&pair)?;
-//! let s = Evaluator::new(&placement).separation(2.0, 5.0);
+//! let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
+//! let (xi, eta) = (equal_steps(-8.0, 8.0, 81), EtaAxis::new(&equal_steps(-10.0, 10.0, 101)));
+//! let mut s = Values::new(81 * 101); // at i_xi * 101 + i_eta
+//! plan(&placement, &xi, &eta, FULL_PRECISION, None).fill(&placement, &xi, &eta, &mut s);
 //! let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
 //!
-//! assert!((s - 0.040_428).abs() < 1e-6, "{s}");
+//! assert!((s[50 * 101 + 75] - 0.040_428).abs() < 1e-6, "{}", s[50 * 101 + 75]); // ξ = 2 mm, η = 5 mm
 //! assert!((patch.area() - 88.828).abs() < 1e-3, "{}", patch.area());
+//! # Ok::<(), wheelrail::Error>(())
+//! ```
+//!
+//! The difference of the rolling radii over the lateral displacement of a wheelset:
+//!
+//! ```
+//! # use wheelrail::{inclination, standards};
+//! use wheelrail::{ONE_CONTACT, Pair, Position, RailDistance, Roll, Selection, Sweep, WheelDistance, WheelsetOnTrack};
+//!
+//! # let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
+//! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+//! let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1506.0), WheelDistance::Spacing(1500.0))?;
+//! let mut sweep = Sweep::new(&system, Selection { within: 0.0, apart: ONE_CONTACT }, None);
+//! let mut rows = Vec::new();
+//! for lateral in [-3.0, 0.0, 3.0] {
+//!     sweep.position(&Position { lateral, yaw: 0.0, roll: Roll::Solve }, &mut rows)?;
+//! }
+//! let delta_r: Vec<f64> = rows.iter().step_by(2).map(|left| left.delta_r).collect();
+//!
+//! assert!(delta_r[1].abs() < 1e-9 && (delta_r[0] + delta_r[2]).abs() < 1e-9 && delta_r[2] > 0.5, "{delta_r:?}");
+//! # Ok::<(), wheelrail::Error>(())
+//! ```
+//!
+//! A load, and the patch that carries it, of a half-space of steel:
+//!
+//! ```
+//! use wheelrail::load::{Elastic, HalfSpace, effective_modulus, press_alone, under_total};
+//! use wheelrail::{Pair, Patch, Pose, Window, first_touch, standards};
+//!
+//! # let rail = standards::rail("60E1")?.rotated(wheelrail::inclination(1.0, 40.0)?);
+//! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+//! let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
+//! let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
+//! let patch = |approach: f64| Patch::new(&placement, approach, &Window::UNBOUNDED);
+//! let carried = |approach: f64| {
+//!     let region = HalfSpace::over(&placement, &patch(approach).extent()?, approach);
+//!     Some(press_alone(region, 1e-4, modulus).ok()?[0].load())
+//! };
+//! let approach = under_total(|approach| carried(approach).unwrap_or(0.0), 80_000.0, 0.05, 1.0, 1e-4);
+//!
+//! let approach = approach.expect("80 kN below an approach of 1 mm");
+//! assert!((0.05..0.15).contains(&approach) && patch(approach).area() > 100.0, "{approach}");
+//! # Ok::<(), wheelrail::Error>(())
+//! ```
+//!
+//! A measured file, and its smoothed profile:
+//!
+//! ```
+//! use wheelrail::measured::{Options, profile};
+//! use wheelrail::Side;
+//!
+//! # let point = |x: f64| format!("{x},{}\n", -x * x / 600.0 + 0.002 * (37.0 * x).sin());
+//! # let file = (-300..=300).map(|k| point(f64::from(k) / 10.0)).collect::<String>();
+//! let axes = Options { mirror: Some(false), flip_z: Some(false), ..Options::default() };
+//! let measured = profile("crown.csv", file.as_bytes(), Side::Rail, &axes)?; // file: a crown of 300 mm with 2 µm of noise
+//! let largest = measured.record.curve.residual.map_or(f64::NAN, |residual| residual.largest); // mm
+//!
+//! assert!(measured.profile.segments().len() < 600 && largest < 0.005, "{largest}");
+//! # Ok::<(), wheelrail::Error>(())
+//! ```
+//!
+//! A deck for CONTACT:
+//!
+//! ```
+//! use wheelrail::export::{ContactSettings, Deck, Frame, GridFields, Header, Prescribed, contact_inp};
+//! use wheelrail::{Evaluator, Pair, Patch, Pose, Window, first_touch, mesh::groups, standards};
+//!
+//! # let rail = standards::rail("60E1")?.rotated(wheelrail::inclination(1.0, 40.0)?);
+//! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+//! let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
+//! let axes = groups(&Patch::new(&placement, 0.05, &Window::UNBOUNDED), 0.0, None)[0].axes(Some([0.5; 2]))?;
+//! let (mut evaluator, n) = (Evaluator::new(&placement), axes.eta.len());
+//! let mut s = vec![0.0; axes.xi.len() * n];
+//! axes.xi.iter().zip(s.chunks_mut(n)).for_each(|(&xi, column)| evaluator.column(xi, &axes.eta, column));
+//! let heights: Vec<f64> = axes.xi.iter().map(|&xi| evaluator.rail_height(xi)).collect();
+//! let normals = axes.xi.iter().map(|&xi| evaluator.normals(xi, 0.0).rail.map_or([0.0; 2], |n| [n.x, n.z]));
+//! let normals: Vec<[f64; 2]> = normals.collect();
+//! let fields = GridFields::new(&axes.xi, &axes.eta, &s, &heights, &normals)?;
+//! let (title, version, scene_hash) = ("60E1 under S1002".into(), "of my program".into(), "none".into());
+//! let frame = Frame::from(&placement.rail().contact_frame());
+//! let header = Header { title, version, scene_hash, approach: 0.05, frame, remarks: Vec::new() };
+//! let (steel, mut deck) = (ContactSettings::steel(Prescribed::Approach(0.05)), Vec::new());
+//! contact_inp(&Deck::new(&header, &fields)?, &steel, &mut deck).expect("room in memory"); // or a file
+//!
+//! assert!(deck.starts_with(b"% title: 60E1 under S1002"));
 //! # Ok::<(), wheelrail::Error>(())
 //! ```
 //!
@@ -100,7 +187,7 @@ pub use profile::{Arc, Half, Polynomial, Profile, Segment, Shape, Side, Station,
 pub use scene::Scene;
 pub use search::{
     Conicity, ContactSearch, ONE_CONTACT, Pose, Position, ProfilePair, Roll, Selection, Sweep, Touch,
-    WheelsetOnTrack,
+    WheelsetOnTrack, first_touch,
 };
 pub use separation::{Evaluator, Normals};
 

@@ -63,7 +63,9 @@ pub use side::SideOnTrack;
 pub use sweep::{ACCURACY, Conicity, Equivalent, NoConicity, Sweep, SweepRow, TrackSide, TwoStep};
 #[cfg(feature = "files")]
 pub(crate) use touch::small_angle;
-pub use touch::{Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, wheel_rotation};
+pub use touch::{
+    Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, first_touch, wheel_rotation,
+};
 pub(crate) use wheelset::Places;
 pub use wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
 

@@ -204,6 +204,36 @@ pub(crate) fn small_angle(place: &str, angle: f64) -> Result<f64> {
     Err(Error::new(place, angle.to_string(), expected, "give angles in rad"))
 }
 
+/// Lowers the wheel of a pair onto its rail, and places the pair at the contact where it touches first.
+///
+/// Accuracy and degenerate cases are those of [`ContactSearch::touch`]. Cost: that of [`ProfilePair::new`], which many positions share,
+/// of a search and of a placement.
+///
+/// # Errors
+/// A wheel that is nowhere over its rail; a profile without a surface.
+///
+/// # Examples
+/// ```
+/// use wheelrail::{Pair, Pose, first_touch, inclination, standards};
+///
+/// let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
+/// let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
+/// let placement = first_touch(&pair, &Pose::new(0.0, 0.01, 0.0)?)?; // on the tread, yawed by 10 mrad
+/// assert!((placement.rolling_radius() - 460.0).abs() < 0.5, "{}", placement.rolling_radius());
+/// assert!(first_touch(&pair, &Pose::new(500.0, 0.0, 0.0)?).is_err()); // beside its rail
+/// # Ok::<(), wheelrail::Error>(())
+/// ```
+pub fn first_touch(pair: &Pair, pose: &Pose) -> Result<Placement> {
+    let profiles = ProfilePair::new(pair)?;
+    let mut search = profiles.search();
+    let touch = search.touch(pose, &Selection { within: 0.0, apart: ONE_CONTACT });
+    let first = touch.as_ref().and_then(|touch| touch.contacts.first()).ok_or_else(|| {
+        let found = format!("a wheel beside its rail at {} mm", pose.offset);
+        Error::new("contact", found, "a part of the wheel over the rail", "move the wheel")
+    })?;
+    first.placed(pair)
+}
+
 impl ContactSearch<'_> {
     /// Lowers a wheel until it touches; `None` if no part of it is over the rail.
     ///
