@@ -17,7 +17,7 @@ fn main() -> wheelrail::Result<()> {
     for step in 0..=80 {
         let lateral = 0.1 * f64::from(step);
         let position = Position { lateral, yaw: 0.0, roll: Roll::Solve };
-        let Some(touch) = search.touch(&position, &selection)? else { continue };
+        let touch = search.touch(&position, &selection)?;
         let right = touch.sides[1].touch.contacts;
         if right.len() > 1 {
             println!("y = {lateral:.1} mm:");

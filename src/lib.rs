@@ -110,22 +110,18 @@
 //!
 //! ```
 //! use wheelrail::export::{ContactSettings, Deck, Frame, GridFields, Header, Prescribed, contact_inp};
-//! use wheelrail::{Evaluator, Pair, Patch, Pose, Window, first_touch, mesh::groups, standards};
+//! use wheelrail::separation::{EtaAxis, FULL_PRECISION, LowerBody, Values, plan};
+//! use wheelrail::{Pair, Patch, Pose, Window, first_touch, mesh::groups, standards};
 //!
 //! # let rail = standards::rail("60E1")?.rotated(wheelrail::inclination(1.0, 40.0)?);
 //! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
 //! let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
-//! let axes = groups(&Patch::new(&placement, 0.05, &Window::UNBOUNDED), 0.0, None)[0].axes(Some([0.5; 2]))?;
-//! let (mut evaluator, n) = (Evaluator::new(&placement), axes.eta.len());
-//! let mut s = vec![0.0; axes.xi.len() * n];
-//! axes.xi.iter().zip(s.chunks_mut(n)).for_each(|(&xi, column)| evaluator.column(xi, &axes.eta, column));
-//! let heights: Vec<f64> = axes.xi.iter().map(|&xi| evaluator.rail_height(xi)).collect();
-//! let normals = axes.xi.iter().map(|&xi| evaluator.normals(xi, 0.0).rail.map_or([0.0; 2], |n| [n.x, n.z]));
-//! let normals: Vec<[f64; 2]> = normals.collect();
-//! let fields = GridFields::new(&axes.xi, &axes.eta, &s, &heights, &normals)?;
-//! let (title, version, scene_hash) = ("60E1 under S1002".into(), "of my program".into(), "none".into());
-//! let frame = Frame::from(&placement.rail().contact_frame());
-//! let header = Header { title, version, scene_hash, approach: 0.05, frame, remarks: Vec::new() };
+//! let grid = groups(&Patch::new(&placement, 0.05, &Window::UNBOUNDED), 0.0, None)[0].axes(Some([0.5; 2]))?;
+//! let (eta, mut s) = (EtaAxis::new(&grid.eta), Values::new(grid.xi.len() * grid.eta.len()));
+//! plan(&placement, &grid.xi, &eta, FULL_PRECISION, None).fill(&placement, &grid.xi, &eta, &mut s);
+//! let lower = LowerBody::under(&placement, &grid.xi, &grid.eta);
+//! let fields = GridFields::over(&grid.xi, &grid.eta, &s, &lower)?;
+//! let header = Header::new("60E1 under S1002".into(), Frame::of(&placement), 0.05);
 //! let (steel, mut deck) = (ContactSettings::steel(Prescribed::Approach(0.05)), Vec::new());
 //! contact_inp(&Deck::new(&header, &fields)?, &steel, &mut deck).expect("room in memory"); // or a file
 //!

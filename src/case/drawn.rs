@@ -1,6 +1,6 @@
 //! What the picture of a part shows, on axes of its own.
 
-use nalgebra::{Point3, Unit, Vector3};
+use nalgebra::Point3;
 
 use super::found::Found;
 use super::pressure::PartPressure;
@@ -109,18 +109,11 @@ pub fn patch_picture(
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: "in memory".into(),
         approach: patch.approach,
-        frame: frame_of(placement),
+        frame: Frame::of(placement),
         remarks: Vec::new(),
     };
     let loops = loops_of(placement, patch);
     drawn.picture(&header, cells, &loops).svg()
-}
-
-/// Gives the contact frame in the axes of the rail's profile; on a rail that varies along the track y counts as its slices do.
-pub(super) fn frame_of(placement: &Placement) -> Frame {
-    let Some(lofted) = placement.lofted_rail() else { return Frame::from(&placement.rail().contact_frame()) };
-    let [xi, eta, zeta] = lofted.axes().map(|axis| Unit::new_normalize(Vector3::from(axis)));
-    Frame { origin: Point3::from(lofted.origin()), xi, eta, zeta }
 }
 
 /// Gives the boundary of a patch on the rail's surface.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::drawn::{Drawn, frame_of, loops_of, quads};
+use super::drawn::{Drawn, loops_of, quads};
 use super::elements::{surface_mesh, surfaces_around, triangles};
 use super::formats::{Of, OutputFormat, Writer};
 use super::in_place::in_place;
@@ -16,18 +16,16 @@ use super::unrolled::Unrolled;
 use super::view::view;
 use crate::error::{Error, Result, in_order};
 use crate::export::{
-    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, GridFields, Header, InPlace, Loop,
-    LowerSurface, NetCdf, PatchMesh, PatchPicture, PatchRow, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
+    ConformalPicture, ContactSettings, CurvedDeck, CurvedFields, Deck, Frame, GridFields, Header, InPlace,
+    Loop, NetCdf, PatchMesh, PatchPicture, PatchRow, Prescribed, QuadMesh, SurfaceMesh, boundary_csv,
     interpen_csv, interpen_sigma_csv,
 };
 use crate::files::Folder;
-use crate::lofted::{Feet, LoftFoot};
 use crate::mesh::Surface;
 use crate::patch::Slice;
 use crate::placement::Creepages;
-use crate::profile::Station;
 use crate::search::TrackSide;
-use crate::separation::{Evaluator, midplane_table};
+use crate::separation::{LowerBody, midplane_table};
 
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
@@ -139,9 +137,9 @@ fn with_jobs<T>(
     then: impl FnOnce([Vec<Job<'_>>; 2], Meshes<'_>, &[String]) -> Result<T>,
 ) -> Result<T> {
     let (axes, mut skipped) = (&part.site.grid, Vec::new());
-    let (header, rail, creepages) = (header(run, part), RailColumns::new(part), run.creepages(part)?);
-    let grid = GridFields::new(&axes.xi, &axes.eta, &part.analysis.separation, &rail.height, &rail.normal)?;
-    let grid = rail.surface.as_ref().map_or(Ok(grid), |surface| grid.over_lower_surface(surface))?;
+    let (header, creepages) = (header(run, part), run.creepages(part)?);
+    let lower = LowerBody::under(&part.site.contact.placement, &axes.xi, &axes.eta);
+    let grid = GridFields::over(&axes.xi, &axes.eta, &part.analysis.separation, &lower)?;
     let pressure = part.analysis.pressure.as_ref().and_then(|found| found.field.as_deref());
     let grid = pressure.map_or(Ok(grid), |pressure| grid.with_pressure(pressure))?;
     let on_rail = part.analysis.conformal.as_ref().map(|conformal| OnRail::new(&part.site, conformal));
@@ -341,72 +339,10 @@ fn rasterise(outputs: &Outputs, png: Option<Rasterise>) -> Result<Option<Rasteri
     Ok(png)
 }
 
-/// ζ^R and the rail's normal at every ξ of the grid.
-struct RailColumns {
-    height: Vec<f64>,
-    normal: Vec<[f64; 2]>,
-    /// The surface of a lower body that is not extruded.
-    surface: Option<LowerSurface>,
-}
-
-impl RailColumns {
-    fn new(part: &Part) -> Self {
-        let placement = &part.site.contact.placement;
-        if placement.lofted_rail().is_some() {
-            // Along η = 0, and where it has no surface there from the tangent plane.
-            let mut bodies = Evaluator::new(placement);
-            let column = |&xi: &f64| {
-                let normal = bodies.normals(xi, 0.0).rail.map_or([0.0, 1.0], |normal| [normal.x, normal.z]);
-                (Some(bodies.lower_height(xi, 0.0)).filter(|zeta| !zeta.is_nan()).unwrap_or(0.0), normal)
-            };
-            let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = part.site.grid.xi.iter().map(column).unzip();
-            return Self { surface: Self::surface(part, &height), height, normal };
-        }
-        let section = &placement.rail().section;
-        let station = |&xi: &f64| section.branch_at(xi).map(|branch| branch.station(xi));
-        let column = |s: Station| (s.z, [-s.sin, s.cos]);
-        let columns =
-            part.site.grid.xi.iter().map(|xi| station(xi).map_or((f64::NAN, [f64::NAN; 2]), column));
-        let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = columns.unzip();
-        Self { surface: Self::surface(part, &height), height, normal }
-    }
-
-    /// Computes the surface of a roller, or of a rail that varies along the track, over the grid; `None` for an extruded rail.
-    fn surface(part: &Part, height: &[f64]) -> Option<LowerSurface> {
-        let (placement, grid) = (&part.site.contact.placement, &part.site.grid);
-        let column = |(&xi, &height): (&f64, &f64)| -> Vec<(f64, [f64; 3])> {
-            if let Some(lofted) = placement.lofted_rail() {
-                let mut feet = Feet::new(lofted);
-                let point = |foot: LoftFoot| (height - foot.zeta, foot.normal().into_inner().into());
-                return grid.eta.iter().map(|&eta| feet.at(xi, eta).map_or(NO_SURFACE, point)).collect();
-            }
-            let mut bodies = Evaluator::new(placement);
-            let normals = grid.eta.iter().map(|&eta| bodies.normals(xi, eta).rail);
-            let normals =
-                normals.map(|normal| normal.map_or(NO_SURFACE.1, |normal| normal.into_inner().into()));
-            let mut under = placement.under().map(Evaluator::new);
-            let fall = |eta: f64| under.as_mut().map_or(f64::NAN, |under| under.separation(xi, eta));
-            grid.eta.iter().copied().map(fall).zip(normals).collect()
-        };
-        (placement.under().is_some() || placement.lofted_rail().is_some()).then(|| {
-            let (fall, normal) = grid.xi.par_iter().zip(height).flat_map_iter(column).unzip();
-            LowerSurface { fall, normal }
-        })
-    }
-}
-
-/// Where a lower body has no surface: its fall and its normal.
-const NO_SURFACE: (f64, [f64; 3]) = (f64::NAN, [f64::NAN; 3]);
-
 fn header(run: &Run, part: &Part) -> Header {
-    Header {
-        title: run.case.echo.title.clone(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        scene_hash: run.case.echo.hash.clone(),
-        approach: part.site.approach(),
-        frame: frame_of(&part.site.contact.placement),
-        remarks: remarks(run, part),
-    }
+    let (title, hash) = (run.case.echo.title.clone(), run.case.echo.hash.clone());
+    let header = Header::new(title, Frame::of(&part.site.contact.placement), part.site.approach());
+    Header { scene_hash: hash, remarks: remarks(run, part), ..header }
 }
 
 /// Lists what the reader of a file of this part must know.

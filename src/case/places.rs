@@ -9,7 +9,7 @@ use super::found::{Found, PlaceOfContact};
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::overlaps::RegionRules;
 use super::wheel::{OnLoft, Region, Wheel, carry, placed_at};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::search;
@@ -243,29 +243,20 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
         Place::Points { .. } => Ok(Vec::new()),
         Place::Wheel { profiles, pose } => {
             let mut search = profiles.search();
-            let Some(touch) = search.touch(pose, &selection) else {
-                return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
-            };
+            let touch = search.touch(pose, &selection)?;
             let places = touch.contacts.to_vec();
             Ok(vec![Side { side: None, height: touch.height, roll: pose.roll(), places }])
         }
         Place::OnSlices { pair, pose } => {
-            let Some((height, places)) =
-                pair.touch(pose, [case.standing.along, case.standing.pitch], &selection)?
-            else {
-                return Err(no_touch("contact: offset", "a wheel over its rail", "check offset and signs"));
-            };
+            let standing = [case.standing.along, case.standing.pitch];
+            let (height, places) = pair.touch(pose, standing, &selection)?;
             Ok(vec![Side { side: None, height, roll: pose.roll(), places }])
         }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
             search.stand_at(case.standing.along, case.standing.pitch);
             let position = Position { roll: roll.map_or(position.roll, Roll::Fixed), ..*position };
-            let Some(touch) = search.touch(&position, &selection)? else {
-                let expected =
-                    "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
-                return Err(no_touch("wheelset: lateral", expected, "check lateral, gauge and signs"));
-            };
+            let touch = search.touch(&position, &selection)?;
             let side = |side, k: usize| {
                 let found = &touch.sides[k];
                 let places = found.touch.contacts.to_vec();
@@ -332,10 +323,6 @@ fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
 fn rules(case: &Case, alone: bool) -> RegionRules {
     let frame = case.question.frame;
     RegionRules { merge: case.axes.merge, spacing: case.axes.spacing, alone, frame }
-}
-
-fn no_touch(place: &str, expected: &str, advice: &str) -> Error {
-    Error::new(place, "no contact", expected, advice).of_kind(ErrorKind::NoContact)
 }
 
 /// Says that no approach carries the load of a case.

@@ -37,9 +37,7 @@ pub use html::{
 };
 pub use in_place::{ContactInPlace, InPlace};
 pub use legacy::separation_vtk;
-pub use model::{
-    Frame, GridFields, Header, Loop, LowerSurface, PatchMesh, PatchRow, QuadMesh, SurfaceMesh, even_step,
-};
+pub use model::{Frame, GridFields, Header, Loop, PatchMesh, PatchRow, QuadMesh, SurfaceMesh, even_step};
 pub use netcdf::{NetCdf, table_nc};
 pub use npy::array_npy;
 pub use picture::{

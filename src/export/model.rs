@@ -5,6 +5,8 @@ use nalgebra::{Isometry2, Point3, Unit, Vector3};
 use crate::error::{Error, Result};
 use crate::mesh::TriangleMesh;
 use crate::numerics::interval::Interval;
+use crate::placement::Placement;
+use crate::separation::{LowerBody, LowerSurface};
 
 /// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two roundings of
 /// `from + i·step` at each end. A smaller factor would refuse grids that are even to rounding. A larger one would accept
@@ -38,6 +40,17 @@ impl From<&Isometry2<f64>> for Frame {
     }
 }
 
+impl Frame {
+    /// Returns the contact frame of a placed pair; on a rail that varies along the track y counts as its slices do.
+    pub fn of(placement: &Placement) -> Self {
+        let Some(lofted) = placement.lofted_rail() else {
+            return Self::from(&placement.rail().contact_frame());
+        };
+        let [xi, eta, zeta] = lofted.axes().map(|axis| Unit::new_normalize(Vector3::from(axis)));
+        Self { origin: Point3::from(lofted.origin()), xi, eta, zeta }
+    }
+}
+
 /// The statements that every file makes about itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
@@ -56,6 +69,12 @@ pub struct Header {
 }
 
 impl Header {
+    /// Makes the header of what no scene describes: its hash is `none`, and there are no remarks.
+    pub fn new(title: String, frame: Frame, approach: f64) -> Self {
+        let (version, scene_hash) = (env!("CARGO_PKG_VERSION").into(), "none".into());
+        Self { title, version, scene_hash, approach, frame, remarks: Vec::new() }
+    }
+
     /// Returns the lines that explain a file: ASCII, at most 76 columns, none empty.
     pub fn statements(&self) -> Vec<String> {
         let remarks = self.remarks.iter().flat_map(|remark| wrapped(remark));
@@ -115,16 +134,6 @@ pub struct GridFields<'a> {
     pressure: Option<&'a [f64]>,
 }
 
-/// The surface of a lower body that is not extruded, a roller or a rail that varies along the track, over a grid: at
-/// `i_xi * n_eta + i_eta`.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct LowerSurface {
-    /// How far it lies below the rail height of its ξ along ζ \[mm\]; NaN where it has no surface.
-    pub fall: Vec<f64>,
-    /// Outward (upward) unit normals (ξ, η, ζ).
-    pub normal: Vec<[f64; 3]>,
-}
-
 impl<'a> GridFields<'a> {
     /// Makes the fields from arrays whose lengths must agree.
     ///
@@ -155,14 +164,17 @@ impl<'a> GridFields<'a> {
         Ok(Self { xi, eta, separation, rail_height, rail_normal, surface: None, pressure: None })
     }
 
-    /// Returns the fields over a lower body that is not extruded.
+    /// Makes the fields of s over a lower body; all as [`GridFields::new`] has it.
     ///
     /// # Errors
-    /// Lengths that do not agree.
-    pub fn over_lower_surface(self, surface: &'a LowerSurface) -> Result<Self> {
-        same_length("falls of the lower body", surface.fall.len(), self.separation.len())?;
-        same_length("normals of the lower body", surface.normal.len(), self.separation.len())?;
-        Ok(Self { surface: Some(surface), ..self })
+    /// An empty axis, or lengths that do not agree.
+    pub fn over(xi: &'a [f64], eta: &'a [f64], separation: &'a [f64], lower: &'a LowerBody) -> Result<Self> {
+        let fields = Self::new(xi, eta, separation, &lower.height, &lower.normal)?;
+        if let Some(surface) = &lower.surface {
+            same_length("falls of the lower body", surface.fall.len(), separation.len())?;
+            same_length("normals of the lower body", surface.normal.len(), separation.len())?;
+        }
+        Ok(Self { surface: lower.surface.as_ref(), ..fields })
     }
 
     /// Returns the fields with the pressures \[N/mm²\] at their points, at `i_xi * n_eta + i_eta`.

@@ -88,7 +88,7 @@ pub fn geometry_over(
     let mut search = system.search();
     let at = |&lateral: &f64| {
         let position = Position { lateral, yaw: 0.0, roll };
-        let touch = search.touch(&position, &Selection { within: 0.0, apart: 0.0 })?;
+        let touch = search.touch_near(&position, &Selection { within: 0.0, apart: 0.0 }, None)?;
         Ok(touch.map(|touch| GeometryAt::new(system, lateral, &touch, roll)))
     };
     lateral.iter().map(at).collect()

@@ -104,7 +104,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad.
     pub fn position(&mut self, position: &Position, rows: &mut Vec<SweepRow>) -> Result<()> {
-        let Some(touch) = self.search.touch(position, &self.selection)? else { return Ok(()) };
+        let Some(touch) = self.search.touch_near(position, &self.selection, None)? else { return Ok(()) };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
         let conicity = match (position.roll, self.conicity) {
             (_, None) => Err(NoConicity::NotAsked),

@@ -1,6 +1,6 @@
 use super::locus::Attitude;
 use super::*;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::load::feasibility;
 use crate::placement::{Pair, RailDistance, WheelDistance};
 use crate::profile::{Arc, Half, Polynomial, Profile, Section, Segment, Shape, Side, inclination, standards};
@@ -42,7 +42,7 @@ fn heights_of_first_touch_of_the_manchester_benchmark() -> Result<()> {
     ];
     for (lateral, yaw, roll, side, z) in table {
         let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
-        let found = search.touch(&position, &ALL)?.map_or(f64::NAN, |touch| touch.sides[side].z);
+        let found = search.touch(&position, &ALL)?.sides[side].z;
         // CONTACT's search is sampled and its numbers have four decimals; the worst row is 2.6e-4.
         assert!((found - z).abs() < 3e-4, "at {lateral}, {yaw}, side {side}: {found} is not {z}");
     }
@@ -56,7 +56,7 @@ fn rolling_radius_differences_of_en_15302_wheel_a() -> Result<()> {
     for (lateral, expected) in [(2.0, 0.667), (4.0, 1.913), (6.0, 4.327)] {
         let position = Position { lateral, yaw: 0.0, roll: Roll::Neglect };
         let touch = search.touch(&position, &ALL)?;
-        let radii = touch.map_or([f64::NAN; 2], |t| t.sides.map(|s| s.touch.contacts[0].rolling_radius));
+        let radii = touch.sides.map(|s| s.touch.contacts[0].rolling_radius);
         let found = radii[1] - radii[0];
         assert!((found - expected).abs() < 1e-3, "at {lateral}: {found} is not {expected}");
     }
@@ -73,7 +73,6 @@ fn mirrored_positions_have_mirrored_answers_to_the_bit() -> Result<()> {
                 let selection = Selection { within: 1.0, apart: 0.0 };
                 let there = one.touch(&Position { lateral, yaw, roll }, &selection)?;
                 let here = other.touch(&Position { lateral: -lateral, yaw: -yaw, roll: back }, &selection)?;
-                let (Some(there), Some(here)) = (there, here) else { panic!("no contact at {lateral}") };
                 // Two equal Newton iterates may end a rounding apart, since −0 − x is not 0 + x in a bracket.
                 assert!((there.roll + here.roll).abs() < 1e-16, "{} {}", there.roll, here.roll);
                 for side in 0..2 {
@@ -94,7 +93,7 @@ fn a_solved_roll_makes_both_wheels_touch() -> Result<()> {
         for k in -40..=40 {
             let position =
                 Position { lateral: 0.25 * f64::from(k), yaw: 5e-4 * f64::from(k), roll: Roll::Solve };
-            let Some(touch) = search.touch(&position, &ALL)? else { panic!("no contact at {position:?}") };
+            let touch = search.touch(&position, &ALL)?;
             let [left, right] = touch.sides.map(|side| side.z);
             assert!((left - right).abs() < 6e-13, "{position:?}: {left} {right}");
         }
@@ -114,7 +113,7 @@ fn contact_jumps_pass_through_two_points_of_contact() -> Result<()> {
             let lateral = (low + high) / 2.0;
             let position = Position { lateral, yaw: 0.0, roll: Roll::Neglect };
             let touch = search.touch(&position, &Selection { within: 0.1, apart: 0.1 })?;
-            last = touch.map_or(Vec::new(), |t| t.sides[1].touch.contacts.to_vec());
+            last = touch.sides[1].touch.contacts.to_vec();
             if last[0].rail_x > past { low = lateral } else { high = lateral }
         }
         assert!(last.len() > 1 && last[1].gap < 1e-12, "at {low}: {last:?}");
@@ -158,7 +157,7 @@ fn a_contact_is_placed_with_its_angles_and_its_skew() -> Result<()> {
     let mut search = system.search();
     for (lateral, yaw) in [(0.0, 0.0), (3.0, 0.01), (6.5, -0.02)] {
         let position = Position { lateral, yaw, roll: Roll::Solve };
-        let Some(touch) = search.touch(&position, &ALL)? else { panic!("no contact") };
+        let touch = search.touch(&position, &ALL)?;
         for contact in touch.sides.iter().flat_map(|side| side.touch.contacts) {
             let placement = contact.placed(&pair)?;
             let [rail, wheel] = [placement.rail(), placement.wheel()];
@@ -179,7 +178,7 @@ fn skew_turns_the_wheel_s_frame_into_the_rail_s() -> Result<()> {
     let mut search = system.search();
     for (lateral, yaw, roll) in [(5.0, 0.012, -0.0004), (10.0, -0.024, -0.0113), (-6.0, 0.05, 0.02)] {
         let position = Position { lateral, yaw, roll: Roll::Fixed(roll) };
-        let Some(touch) = search.touch(&position, &ALL)? else { panic!("no contact") };
+        let touch = search.touch(&position, &ALL)?;
         for (side, sign) in touch.sides.iter().zip([-1.0, 1.0]) {
             let c = side.touch.contacts[0];
             let (yaw, roll) = (sign * yaw, sign * roll);
@@ -212,8 +211,7 @@ fn parallel_lines_and_equal_arcs_touch_in_their_middle() -> Result<()> {
     let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0)?)?;
     let pose = Pose::new(15.0, 0.0, 0.0)?;
     let mut search = pair.search();
-    let touch = search.touch(&pose, &ALL);
-    let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());
+    let contacts = search.touch(&pose, &ALL)?.contacts;
     assert!(contacts.iter().any(|c| (c.rail_x - 2.5).abs() < 1e-12 && !c.kink()), "{contacts:?}");
 
     let arc = |x| Ok::<_, Error>(vec![Segment::arc(Arc::about([0.0, 80.0], 80.0, Half::Lower, x)?)]);
@@ -221,8 +219,8 @@ fn parallel_lines_and_equal_arcs_touch_in_their_middle() -> Result<()> {
     let wheel = Profile::new("", "", arc([-20.0, 20.0])?)?;
     let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0)?)?;
     let mut search = pair.search();
-    let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &ALL);
-    assert!(touch.is_some_and(|t| t.height.abs() < 1e-13), "{touch:?}");
+    let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &ALL)?;
+    assert!(touch.height.abs() < 1e-13, "{touch:?}");
     Ok(())
 }
 
@@ -231,7 +229,8 @@ fn a_wheel_beside_its_rail_touches_nothing() -> Result<()> {
     let pair = ProfilePair::new(&Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?)?;
     let mut search = pair.search();
     for offset in [-200.0, 300.0] {
-        assert_eq!(search.touch(&Pose::new(offset, 0.0, 0.0)?, &ALL), None);
+        let touch = search.touch(&Pose::new(offset, 0.0, 0.0)?, &ALL);
+        assert_eq!(touch.map_err(|error| error.kind), Err(ErrorKind::NoContact));
     }
     assert!(Pose::new(f64::NAN, 0.0, 0.0).is_err());
     assert!(Pose::new(0.0, 1.0, 0.0).is_err());
@@ -245,9 +244,8 @@ fn a_contact_on_a_kink_is_where_the_closed_segments_cross() -> Result<()> {
     let pair = Pair::new(standards::rail("56E1")?, standards::wheel("APTA-120")?, 625.0)?;
     let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
-    let touch = search.touch(&Pose::new(8.045, 0.0, 0.0)?, &ALL);
-    let contact = touch.map(|touch| touch.contacts[0]).filter(Contact::kink);
-    let contact = contact.ok_or_else(|| Error::new("", "no kink", "one", "look at the drawing"))?;
+    let contact = search.touch(&Pose::new(8.045, 0.0, 0.0)?, &ALL)?.contacts[0];
+    assert!(contact.kink(), "{contact:?}");
     let placement = contact.placed(&pair)?;
     let z = placement.wheel().point.station.z;
     assert!((z + 9.525_298_313_755).abs() < 1e-12, "{z}");
@@ -265,8 +263,7 @@ fn lengths_times_four_give_the_same_bits() -> Result<()> {
         let wheel = Profile::new("", "", vec![arc([3.0, -330.0], 330.0, Half::Upper, [-40.0, 30.0])?])?;
         let pair = ProfilePair::new(&Pair::new(rail, wheel, 460.0 * k)?)?;
         let mut search = pair.search();
-        let touch = search.touch(&Pose::new(1.5 * k, 0.02, 0.01)?, &ALL);
-        Ok(touch.map_or(f64::NAN, |t| t.height / k))
+        Ok(search.touch(&Pose::new(1.5 * k, 0.02, 0.01)?, &ALL)?.height / k)
     };
     assert_eq!(scaled(1.0)?.to_bits(), scaled(4.0)?.to_bits());
     assert_eq!(scaled(1.0)?.to_bits(), scaled(0.0625)?.to_bits());

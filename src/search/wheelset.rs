@@ -12,7 +12,7 @@ use super::locus::Attitude;
 use super::over_rail::Work;
 use super::position::{Position, Roll};
 use super::side::{SideOnTrack, SidePair, SideSearch};
-use super::touch::{Selection, Touch, small_angle};
+use super::touch::{Selection, Touch, no_contact, small_angle};
 use crate::error::{Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
@@ -28,7 +28,7 @@ use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 /// let system = WheelsetOnTrack::new(&pair, RailDistance::Spacing(1500.0), WheelDistance::Spacing(1500.0))?;
 /// let mut search = system.search();
 /// let centred = Position { lateral: 0.0, yaw: 0.0, roll: Roll::Solve };
-/// let touch = search.touch(&centred, &Selection { within: 0.0, apart: ONE_CONTACT })?.expect("both wheels touch");
+/// let touch = search.touch(&centred, &Selection { within: 0.0, apart: ONE_CONTACT })?;
 /// let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
 /// assert!((left - right).abs() < 1e-9);
 /// # Ok::<(), wheelrail::Error>(())
@@ -227,8 +227,7 @@ impl WheelsetSearch<'_> {
         self.sides.iter_mut().for_each(|side| side.stand_at(along, pitch));
     }
 
-    /// Lowers the wheelset until it touches; `None` if a side has no wheel over its rail, or if the roll is to be solved and within ±0.1 rad
-    /// there is none at which both wheels touch.
+    /// Lowers the wheelset until it touches.
     ///
     /// The difference of the two sides' heights grows with the roll as long as contact is on treads and
     /// flanks flatter than about atan(D/R) ≈ 73°, D the distance of the contacts. Beyond that angle, turning
@@ -238,17 +237,21 @@ impl WheelsetSearch<'_> {
     /// Cost: the two sides are lowered two to four times on treads, ten times at most where a flange is steeper than 73°; 64 at most.
     ///
     /// # Errors
-    /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over.
-    pub fn touch(&mut self, position: &Position, selection: &Selection) -> Result<Option<WheelsetTouch<'_>>> {
-        self.touch_near(position, selection, None)
+    /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over. Of the kind
+    /// [`ErrorKind::NoContact`](crate::ErrorKind::NoContact): a side with no wheel over its rail; a roll to be solved where within
+    /// ±0.1 rad there is none at which both wheels touch.
+    pub fn touch(&mut self, position: &Position, selection: &Selection) -> Result<WheelsetTouch<'_>> {
+        let expected = "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
+        let nowhere = || no_contact("wheelset: lateral", expected, "check lateral, gauge and signs");
+        self.touch_near(position, selection, None)?.ok_or_else(nowhere)
     }
 
-    /// Does what [`WheelsetSearch::touch`] does, beginning from the places of a touch nearby. They spare the search for a roll where
+    /// Does what [`WheelsetSearch::touch`] does, `None` where there is no contact, beginning from the places of a touch nearby. They spare the search for a roll where
     /// they are still the lowest; elsewhere they are forgotten. Where contacts are steeper than 73°, several rolls may have contact
     /// on both sides, and the nearby one is found.
     ///
     /// # Errors
-    /// Those of [`WheelsetSearch::touch`].
+    /// The other ones of [`WheelsetSearch::touch`].
     pub(crate) fn touch_near(
         &mut self,
         position: &Position,

@@ -31,7 +31,7 @@ use crate::numerics::interval::Interval;
 /// table.fill(0.25, 0.0, &mut values);
 /// let position = Position { lateral: 0.25, yaw: 0.0, roll: Roll::Solve };
 /// let mut search = system.search();
-/// let touch = search.touch(&position, &Selection { within: 0.0, apart: 0.0 })?.expect("a wheelset on its track");
+/// let touch = search.touch(&position, &Selection { within: 0.0, apart: 0.0 })?;
 /// let direct = touch.sides[1].touch.contacts[0].rolling_radius;
 /// assert!((values[radius] - direct).abs() <= table.quantities()[radius].error);
 /// # Ok::<(), wheelrail::Error>(())

@@ -245,7 +245,7 @@ fn resting(state: &mut u64, yawed: bool) -> (Scene, Placement, Contact) {
         let pose = Pose::new(offset, yaw, between(state, -0.01, 0.01)).expect("small angles");
         let mut search = search.search();
         let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT });
-        if let Some(contact) = touch.map(|touch| touch.contacts[0]).filter(|c| c.contact_angle < -0.5) {
+        if let Some(contact) = touch.ok().map(|touch| touch.contacts[0]).filter(|c| c.contact_angle < -0.5) {
             return (scene, contact.placed(&pair).expect("a placed pair"), contact);
         }
     }

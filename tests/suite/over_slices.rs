@@ -140,8 +140,8 @@ fn equal_slices_have_separations_and_patches_of_the_extruded_rail() -> Result<()
             random.between(-0.005, 0.005),
             random.between(-0.005, 0.005),
         )?;
-        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT });
-        let contact = touch.expect("a wheel on a rail").contacts[0];
+        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT })?;
+        let contact = touch.contacts[0];
         let (swept, lofted) =
             (contact.placed(&pair)?, contact.placed_on(&pair, &body, random.between(-9.0, 9.0))?);
         let (mut own, mut other) = (Evaluator::new(&lofted), Evaluator::new(&swept));

@@ -96,7 +96,7 @@ fn case(number: u64) -> Option<Case> {
         let profiles = ProfilePair::new(&pair).ok()?;
         let mut search = profiles.search();
         let pose = Pose::new(dice.between(-1.0, 1.0), yaw, 0.0).ok()?;
-        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT })?;
+        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT }).ok()?;
         touch.contacts.first()?.placed(&pair).ok()?
     };
     let approach = bend * 10f64.powf(dice.between(-2.5, 0.0));

@@ -136,7 +136,7 @@ fn first_touch_on_a_roller_rig_agrees_with_contact() {
             let position =
                 Position { lateral: number(given, "y"), yaw: -number(given, "yaw"), roll: Roll::Fixed(0.0) };
             let selection = Selection { within: 0.0, apart: ONE_CONTACT };
-            let touch = search.touch(&position, &selection).unwrap().unwrap();
+            let touch = search.touch(&position, &selection).unwrap();
             let right = touch.sides[1];
             let expected = -number(given, "z_first_touch");
             println!("{radius} {position:?}: {:.5} {expected:.4} {:?}", right.z, right.touch.contacts[0]);
@@ -167,7 +167,7 @@ fn forces_on_a_roller_rig_agree_with_contact() {
             }
             let position = Position { lateral, yaw, roll: Roll::Fixed(0.0) };
             let selection = Selection { within: 0.0, apart: ONE_CONTACT };
-            let touch = search.touch(&position, &selection).unwrap().unwrap();
+            let touch = search.touch(&position, &selection).unwrap();
             let mut placement = touch.sides[1].touch.contacts[0].placed(pair).unwrap();
             let sinking = number(given, "z") - number(given, "z_first_touch");
             let whole = |placement: &Placement| {

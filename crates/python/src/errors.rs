@@ -78,12 +78,6 @@ pub(crate) fn exception(error: Error) -> PyErr {
     })
 }
 
-/// Makes the error of a wheel that touches nothing.
-pub(crate) fn no_contact(place: &str, expected: &str) -> PyErr {
-    let error = Error::new(place, "no contact", expected, "check the displacement, the gauge and the signs");
-    exception(error.of_kind(ErrorKind::NoContact))
-}
-
 /// Warns the caller of doubts.
 ///
 /// # Errors

@@ -10,7 +10,7 @@ use wheelrail::scene;
 use wheelrail::search::{self, ONE_CONTACT, Pose, ProfilePair, Selection, TrackSide};
 
 use crate::contact::Contact;
-use crate::errors::{OrRaise, exception, no_contact, warn};
+use crate::errors::{OrRaise, exception, warn};
 use crate::place::{Place, Spot, joined};
 use crate::profile::Profile;
 use crate::values::made;
@@ -109,9 +109,7 @@ impl Pair {
             [("yaw", yaw), ("roll", roll)].into_iter().filter_map(|(name, angle)| usual::angle(name, angle)),
         )?;
         let mut search = self.search.search();
-        let Some(touch) = search.touch(&pose, &Selection { within, apart: ONE_CONTACT }) else {
-            return Err(no_contact("offset", "a wheel over its rail"));
-        };
+        let touch = search.touch(&pose, &Selection { within, apart: ONE_CONTACT }).or_raise()?;
         warn(py, self.doubts_of([None, touch.contacts.first()]))?;
         let contacts = self.contacts("single", touch.contacts);
         made(py, "WheelTouch", (touch.height, contacts))

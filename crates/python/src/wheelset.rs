@@ -15,7 +15,7 @@ use wheelrail::search::{
 use wheelrail::{Error, ErrorKind, RailDistance, WheelDistance};
 
 use crate::asked::{asked, checked_modulus};
-use crate::errors::{OrRaise, exception, no_contact, warn};
+use crate::errors::{OrRaise, exception, warn};
 use crate::long::detached;
 use crate::pair::Pair;
 use crate::positions::{RollArgument, positions};
@@ -153,16 +153,13 @@ impl Wheelset {
         let within = scene::within(Some(within)).or_raise()?;
         let mut search = self.system.search();
         let selection = Selection { within, apart: ONE_CONTACT };
-        let found = search.touch(&position, &selection).or_raise()?;
+        let found = search.touch(&position, &selection);
         let fixed = if let Roll::Fixed(roll) = position.roll { roll } else { 0.0 };
         warn(
             py,
             [("yaw", yaw), ("roll", fixed)].into_iter().filter_map(|(name, angle)| usual::angle(name, angle)),
         )?;
-        let Some(touch) = found else {
-            let expected = "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
-            return Err(no_contact("lateral", expected));
-        };
+        let touch = found.or_raise()?;
         let contacts = touch.sides.each_ref().map(|side| side.touch.contacts);
         warn(py, self.doubts_of_contacts(contacts.map(<[_]>::first)))?;
         let z = (touch.sides[0].z, touch.sides[1].z);

@@ -14,7 +14,7 @@ use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, w
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::{Mark, Profile, Side, beside, standards, trace};
-use wheelrail::search::{Pose, ProfilePair, Selection};
+use wheelrail::search::{Pose, first_touch};
 use wheelrail::separation::Evaluator;
 
 /// Distances of the points \[mm\].
@@ -197,12 +197,8 @@ impl DrawnPair {
         let bodies =
             [DrawnBody::new(rail, Side::Rail), DrawnBody::new(standards::wheel("S1002")?, Side::Wheel)];
         let pair = inclined_pair(&bodies[0].profile, bodies[1].profile.clone())?;
-        let search = ProfilePair::new(&pair)?;
-        let mut search = search.search();
-        let touch = search.touch(&Pose::new(0.0, 0.0, 0.0)?, &Selection { within: 0.0, apart: 0.5 });
+        let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
         let missing = |what: &str| Error::new("60E1 on S1002", what, "a tread contact", "report this");
-        let contact = touch.and_then(|t| t.contacts.first().copied()).ok_or_else(|| missing("no contact"))?;
-        let placement = contact.placed(&pair)?;
         let window = Window { xi: Interval::symmetric(20.0), eta: Interval::symmetric(20.0) };
         let patch = Patch::new(&placement, APPROACH, &window);
         let extent = patch.extent().ok_or_else(|| missing("no patch"))?;

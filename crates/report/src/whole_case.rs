@@ -8,7 +8,7 @@ use super::specimen::{Instrument, Specimen, SpecimenKind};
 use super::speed::{LEAST_RUNS, Timing, race, timed};
 use wheelrail::Interval;
 use wheelrail::case::{Profiles, Run, SILENT};
-use wheelrail::error::{Error, Result};
+use wheelrail::error::Result;
 use wheelrail::measured::Format;
 use wheelrail::mesh::{StripCounts, StripMesh, equal_steps};
 use wheelrail::patch::{Patch, Window};
@@ -146,9 +146,7 @@ pub fn with_parts<T>(case: &str, side: usize, then: impl FnOnce(&mut dyn FnMut(&
     let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
     let (pose, selection) = (Pose::new(0.0, yaw, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
-    let found = search.touch(&pose, &selection).and_then(|touch| touch.contacts.first().copied());
-    let lost = || Error::new("whole case", "no contact", "a tread contact", "report this");
-    let contact = found.ok_or_else(lost)?;
+    let contact = search.touch(&pose, &selection)?.contacts[0];
     let place = || contact.placed(&pair);
     let placement: Placement = place()?;
     let [xi, eta] = HALF_WIDTHS.map(|half| equal_steps(-half, half, side));
@@ -161,7 +159,7 @@ pub fn with_parts<T>(case: &str, side: usize, then: impl FnOnce(&mut dyn FnMut(&
     StripMesh::new(&placement, &patch, StripCounts::default())?;
     Ok(then(&mut |part| match part {
         "touch" => {
-            black_box(search.touch(&pose, &selection));
+            black_box(&search.touch(&pose, &selection));
         }
         "place" => drop(black_box(place())),
         "plan" => planned = plan(&placement, &xi, &axis, FULL_PRECISION, None),

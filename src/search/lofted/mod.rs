@@ -20,7 +20,7 @@ use super::body::SearchBody;
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use super::over_rail::Work;
-use super::touch::{Contact, Pose, Selection, Touch};
+use super::touch::{Contact, Pose, Selection, Touch, beside_its_rail};
 use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftedBody, LoftedWheel, Strip, turned};
 use crate::numerics::interval::Interval;
@@ -119,16 +119,17 @@ impl LoftedPair {
 
     /// Lowers a single wheel until it touches: the height \[mm\] of its profile's origin over the rail's one, and the contacts of the
     /// selection, the lowest first. That origin stands at `along` \[mm\] of the list of a rail that varies; one that varies itself is turned
-    /// by `pitch` \[rad\], + forward at the bottom. `None` if no part of it is over the rail.
+    /// by `pitch` \[rad\], + forward at the bottom.
     ///
     /// # Errors
-    /// A rail that follows the wheel's shape all over.
+    /// A wheel no part of which is over the rail, of the kind [`ErrorKind::NoContact`](crate::ErrorKind::NoContact); a rail that follows
+    /// the wheel's shape all over.
     pub fn touch(
         &self,
         pose: &Pose,
         [along, pitch]: [f64; 2],
         selection: &Selection,
-    ) -> Result<Option<(f64, Vec<Contact>)>> {
+    ) -> Result<(f64, Vec<Contact>)> {
         let mut search = self.search();
         search.stand_at(along, pitch);
         let attitude = pose.attitude(self.radius);
@@ -136,10 +137,8 @@ impl LoftedPair {
         if search.gave_up {
             return Err(self.too_close());
         }
-        Ok(lowest.map(|lowest| {
-            let touch = search.collect(&attitude, -lowest.gap, selection);
-            (touch.height, touch.contacts.to_vec())
-        }))
+        let height = -lowest.ok_or_else(beside_its_rail)?.gap;
+        Ok((height, search.collect(&attitude, height, selection).contacts.to_vec()))
     }
 
     /// Prepares a pair one body of which varies: that body.

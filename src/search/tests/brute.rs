@@ -260,8 +260,8 @@ fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
         let offset = random.between(-8.0, 8.0);
         let pair = ProfilePair::new(&Pair::new(rail.clone(), wheel.clone(), 300.0)?)?;
         let mut search = pair.search();
-        let touch = search.touch(&Pose::new(offset, 0.0, 0.0)?, &Selection { within, apart: 0.0 });
-        let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());
+        let contacts =
+            search.touch(&Pose::new(offset, 0.0, 0.0)?, &Selection { within, apart: 0.0 })?.contacts;
         let (above, below) = (Section::own_axes(&wheel, Side::Wheel), Section::own_axes(&rail, Side::Rail));
         let gap = |x: f64| {
             let gap = above.height(x - offset) - below.height(x);
@@ -275,7 +275,7 @@ fn every_local_minimum_of_the_gap_is_reported() -> Result<()> {
             }
         }
         // The grid may be too coarse for a contact, but each is a minimum closer by.
-        for c in &contacts {
+        for c in contacts {
             // An end may be a rounding outside.
             let here =
                 [-1e-12, 0.0, 1e-12].map(|h| gap(c.rail_x + h)).into_iter().fold(f64::INFINITY, f64::min);

@@ -55,8 +55,8 @@ fn contacts_agree_with_60_digit_values() -> Result<()> {
         let rail_x = number(&file, "exact_rail_x");
         let offset = rail_x - Attitude::new(0.0, yaw, roll, radius).outline(&station).x;
         let mut search = pair.search();
-        let touch = search.touch(&Pose::new(offset, yaw, roll)?, &Selection { within: 20.0, apart: 0.0 });
-        let contacts = touch.map_or(Vec::new(), |t| t.contacts.to_vec());
+        let contacts =
+            search.touch(&Pose::new(offset, yaw, roll)?, &Selection { within: 20.0, apart: 0.0 })?.contacts;
         let title = &scene["title"];
         let found = contacts.iter().find(|c| (c.rail_x - rail_x).abs() < 1e-9);
         let Some(c) = found else { panic!("{title}: no contact at {rail_x} among {contacts:?}") };

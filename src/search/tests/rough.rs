@@ -33,7 +33,7 @@ fn compare(seed: u64) -> Result<std::result::Result<usize, String>> {
     let minima = oracle.minima(step);
     let name = format!("seed {seed}, pose {:?}", pair.pose);
     let lowest = minima.iter().map(|m| m[0]).fold(f64::INFINITY, f64::min);
-    let Some(touch) = touch else {
+    let Ok(touch) = touch else {
         let limit = profiles.bodies.highest(&Attitude::new(offset, yaw, roll, RADIUS));
         let differ = format!("{name}: no touch, but {minima:?}");
         return Ok(if lowest < limit { Err(differ) } else { Ok(0) });

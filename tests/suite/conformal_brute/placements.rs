@@ -79,7 +79,7 @@ impl Stock {
         let pose = Pose::new(offset, yaw, dice.between(-0.01, 0.01)).expect("a pose");
         let mut search = profiles.search();
         let touch = search.touch(&pose, &Selection { within: 0.5, apart: ONE_CONTACT });
-        let contacts = touch.map_or_else(Vec::new, |touch| touch.contacts.to_vec());
+        let contacts = touch.map_or_else(|_| Vec::new(), |touch| touch.contacts.to_vec());
         let placed = contacts.iter().enumerate().filter_map(|(k, contact)| {
             let placement = contact.placed(&pair).ok()?;
             Some(Placed { name: format!("{name}, offset {offset}, contact {k}"), placement })

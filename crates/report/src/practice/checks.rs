@@ -4,7 +4,7 @@ use super::brute::{Bodies, Stance};
 use super::fill::filled;
 use super::row::PracticeRow;
 use crate::random::Random;
-use wheelrail::error::{Error, Result};
+use wheelrail::error::{ErrorKind, Result};
 use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Patch, Window};
 use wheelrail::placement::{Pair, Placement, RailDistance, WheelDistance};
@@ -39,9 +39,7 @@ pub(super) fn wheel(pair: &Pair, offset: f64, yaw: f64, approach: f64, row: &mut
     let bodies = Bodies::new(pair);
     let profiles = ProfilePair::new(pair)?;
     let mut search = profiles.search();
-    let touch = search.touch(&Pose::new(offset, yaw, 0.0)?, &SELECTION);
-    let touch =
-        touch.ok_or_else(|| Error::new("search", "no touch", "a wheel over its rail", "see the case"))?;
+    let touch = search.touch(&Pose::new(offset, yaw, 0.0)?, &SELECTION)?;
     contacts(&bodies, &Stance { offset, yaw, roll: 0.0 }, &touch, "", row);
     patch(pair, &bodies, touch.contacts.first(), approach, "", row)
 }
@@ -59,8 +57,6 @@ pub(super) fn wheelset(
     let mut search = system.search();
     let position = Position { lateral, yaw, roll: Roll::Solve };
     let touch = search.touch(&position, &SELECTION)?;
-    let touch =
-        touch.ok_or_else(|| Error::new("search", "no touch", "both wheels on a rail", "see the case"))?;
     let z = touch.sides.map(|side| side.z);
     if (z[0] - z[1]).abs() > HEIGHT {
         row.failures.push(format!("the sides touch at {} and {} mm", z[0], z[1]));
@@ -86,9 +82,12 @@ pub(super) fn sweep(
     let mut search = system.search();
     for &lateral in positions {
         let position = Position { lateral, yaw, roll: Roll::Solve };
-        let Some(touch) = search.touch(&position, &SELECTION)? else {
-            row.failures.push(format!("lateral {lateral}: no touch"));
-            continue;
+        let touch = match search.touch(&position, &SELECTION) {
+            Err(error) if error.kind == ErrorKind::NoContact => {
+                row.failures.push(format!("lateral {lateral}: {error}"));
+                continue;
+            }
+            touch => touch?,
         };
         for (sign, side) in [(-1.0, touch.sides[0]), (1.0, touch.sides[1])] {
             let standing = standing(&system, &position, touch.roll, sign);

@@ -54,7 +54,7 @@ impl<'a> Searched<'a> {
     /// A displacement or roll that is not finite.
     pub(super) fn at(&mut self, lateral: f64, sides: &mut Sides) -> Result<bool> {
         let position = Position { lateral, yaw: 0.0, roll: self.roll };
-        let Some(touch) = self.search.touch(&position, &NEAR)? else { return Ok(false) };
+        let Some(touch) = self.search.touch_near(&position, &NEAR, None)? else { return Ok(false) };
         let arms = [0, 1].map(|k| Arm::new(self.system, lateral, k, &touch.sides[k]));
         let lowest = [0, 1].map(|k| arms[k].turning(&touch.sides[k].touch.contacts[0]));
         // With the roll solved both sides rise alike: the roll turns by this much with y.

@@ -312,7 +312,7 @@ fn brute_force(
     for k in 0..=steps {
         let lateral = amplitude * k as f64 / steps as f64;
         let position = Position { lateral, yaw: 0.0, roll };
-        let Some(touch) = search.touch(&position, &nothing_else)? else { break };
+        let Ok(touch) = search.touch(&position, &nothing_else) else { break };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);
         knots.push(Knot { y: lateral, force: right - left, defect: 0.0 });
     }
