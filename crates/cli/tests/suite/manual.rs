@@ -35,10 +35,10 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
     found
 }
 
-/// A folder of a page's own, with the examples in it.
+/// A folder of a test's own for a page, with the examples in it.
 #[cfg(unix)]
-fn page_folder(page: &Path) -> PathBuf {
-    let here = folder("manual").join(page.file_stem().unwrap());
+fn page_folder(test: &str, page: &Path) -> PathBuf {
+    let here = folder(test).join(page.file_stem().unwrap());
     let _ = std::fs::remove_dir_all(&here);
     std::fs::create_dir_all(&here).unwrap();
     std::os::unix::fs::symlink(
@@ -114,7 +114,7 @@ fn every_command_of_the_manual_runs() {
             .iter()
             .flat_map(|block| block.lines().filter_map(command).collect::<Vec<_>>())
             .collect();
-        let here = if commands.is_empty() { continue } else { page_folder(&page) };
+        let here = if commands.is_empty() { continue } else { page_folder("commands of pages", &page) };
         for command in commands {
             let output = Command::new("sh")
                 .args(["-c", &command])
@@ -146,7 +146,7 @@ fn every_scene_and_profile_of_the_manual_is_accepted() {
             } else {
                 continue;
             };
-            let here = page_folder(&page);
+            let here = page_folder("scenes of pages", &page);
             std::fs::write(here.join("block.toml"), block).unwrap();
             let output = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
                 .args(arguments)
