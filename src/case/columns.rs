@@ -8,11 +8,11 @@ use crate::load::curvatures_at;
 use crate::search::{Contact, SweepRow, TrackSide};
 
 /// A column of the table of a sweep. The command line's text and Python's arrays read the one list, [`COLUMNS`].
-pub struct Column {
+pub struct SweepColumn {
     /// Its name, with the unit.
     pub name: &'static str,
     stands: Stands,
-    values: Values,
+    values: ColumnValues,
 }
 
 /// Where a column stands.
@@ -23,7 +23,7 @@ enum Stands {
 }
 
 /// The values of a column.
-enum Values {
+enum ColumnValues {
     Position,
     Side,
     Contact,
@@ -35,13 +35,13 @@ enum Values {
 }
 
 /// The columns of the table, in their order.
-pub const COLUMNS: [Column; 23] = [
-    Column { name: "position", stands: Stands::Arrays, values: Values::Position },
+pub const COLUMNS: [SweepColumn; 23] = [
+    SweepColumn { name: "position", stands: Stands::Arrays, values: ColumnValues::Position },
     number("lateral_mm", |row, _| row.lateral),
     number("yaw_rad", |row, _| row.yaw),
     number("roll_rad", |row, _| row.roll),
-    Column { name: "side", stands: Stands::Both, values: Values::Side },
-    Column { name: "contact", stands: Stands::Both, values: Values::Contact },
+    SweepColumn { name: "side", stands: Stands::Both, values: ColumnValues::Side },
+    SweepColumn { name: "contact", stands: Stands::Both, values: ColumnValues::Contact },
     number("z_mm", |row, _| row.z),
     number("rail_x_mm", |row, _| row.contact.rail_x),
     number("wheel_x_mm", |row, _| row.contact.wheel_x),
@@ -50,7 +50,7 @@ pub const COLUMNS: [Column; 23] = [
     number("rolling_radius_mm", |row, _| row.contact.rolling_radius),
     number("delta_r_mm", |row, _| row.delta_r),
     perhaps("conicity", |row, _| row.conicity.map_or(f64::NAN, |found| found.conicity)),
-    Column {
+    SweepColumn {
         stands: Stands::Arrays,
         ..number("conicity_error", |row, _| row.conicity.map_or(f64::NAN, |found| found.error))
     },
@@ -58,25 +58,25 @@ pub const COLUMNS: [Column; 23] = [
     number("skew_rad", |row, _| row.contact.skew),
     number("rail_curvature_per_mm", |row, _| row.contact.rail_curvature),
     number("wheel_curvature_per_mm", |row, _| row.contact.wheel_curvature),
-    Column { name: "kink", stands: Stands::Both, values: Values::Kink },
+    SweepColumn { name: "kink", stands: Stands::Both, values: ColumnValues::Kink },
     perhaps("hertz_xi_mm", |_, [xi, _]| xi),
     perhaps("hertz_eta_mm", |_, [_, eta]| eta),
-    Column { name: "doubt", stands: Stands::Both, values: Values::Doubt },
+    SweepColumn { name: "doubt", stands: Stands::Both, values: ColumnValues::Doubt },
 ];
 
-const fn number(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> Column {
-    Column { name, stands: Stands::Both, values: Values::Number(of, false) }
+const fn number(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> SweepColumn {
+    SweepColumn { name, stands: Stands::Both, values: ColumnValues::Number(of, false) }
 }
 
 /// A number whose cell is empty where there is none.
-const fn perhaps(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> Column {
-    Column { name, stands: Stands::Both, values: Values::Number(of, true) }
+const fn perhaps(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> SweepColumn {
+    SweepColumn { name, stands: Stands::Both, values: ColumnValues::Number(of, true) }
 }
 
-impl Column {
+impl SweepColumn {
     /// Tells whether it holds numbers that are not whole.
     pub fn is_number(&self) -> bool {
-        matches!(self.values, Values::Number(..))
+        matches!(self.values, ColumnValues::Number(..))
     }
 }
 
@@ -85,7 +85,7 @@ impl Column {
 /// Lengths in mm, angles in rad; x and angles are in the profile axes of the contact's side, the left side mirrored. NaN
 /// stands where a quantity does not exist.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Columns {
+pub struct SweepColumns {
     /// Number of the position, from 0.
     pub position: Vec<u64>,
     /// Whether the contact is on the right-hand side.
@@ -115,7 +115,7 @@ pub enum ColumnArray {
     Numbers(Vec<f64>),
 }
 
-impl Columns {
+impl SweepColumns {
     /// Makes room for so many more rows.
     pub fn reserve(&mut self, rows: usize) {
         self.position.reserve(rows);
@@ -156,7 +156,7 @@ impl Columns {
         let axes = ellipse.and_then(|by| semi_axes(&row.contact, row.side == TrackSide::Left, by));
         let axes = axes.unwrap_or([f64::NAN; 2]);
         for (column, numbers) in COLUMNS.iter().zip(&mut self.numbers) {
-            if let Values::Number(of, _) = column.values {
+            if let ColumnValues::Number(of, _) = column.values {
                 numbers.push(of(row, axes));
             }
         }
@@ -202,13 +202,13 @@ impl Columns {
                 }
                 // Writing to a String cannot fail.
                 let _ = match column.values {
-                    Values::Position => write!(out, "{}", self.position[row]),
-                    Values::Side => out.write_str(if self.right[row] { "right" } else { "left" }),
-                    Values::Contact => write!(out, "{}", self.contact[row]),
-                    Values::Kink => write!(out, "{}", u8::from(self.kink[row])),
-                    Values::Doubt => write!(out, "{}", self.doubt[row]),
-                    Values::Number(_, true) if numbers[row].is_nan() => Ok(()),
-                    Values::Number(..) => write!(out, "{}", numbers[row]),
+                    ColumnValues::Position => write!(out, "{}", self.position[row]),
+                    ColumnValues::Side => out.write_str(if self.right[row] { "right" } else { "left" }),
+                    ColumnValues::Contact => write!(out, "{}", self.contact[row]),
+                    ColumnValues::Kink => write!(out, "{}", u8::from(self.kink[row])),
+                    ColumnValues::Doubt => write!(out, "{}", self.doubt[row]),
+                    ColumnValues::Number(_, true) if numbers[row].is_nan() => Ok(()),
+                    ColumnValues::Number(..) => write!(out, "{}", numbers[row]),
                 };
             }
             out.push('\n');
@@ -220,12 +220,16 @@ impl Columns {
         let mut out = Vec::new();
         for (column, numbers) in COLUMNS.iter().zip(self.numbers) {
             out.push(match column.values {
-                Values::Position => (column.name, ColumnArray::Positions(std::mem::take(&mut self.position))),
-                Values::Side => ("right", ColumnArray::Flags(std::mem::take(&mut self.right))),
-                Values::Contact => (column.name, ColumnArray::Counts(std::mem::take(&mut self.contact))),
-                Values::Kink => (column.name, ColumnArray::Flags(std::mem::take(&mut self.kink))),
-                Values::Number(..) => (column.name, ColumnArray::Numbers(numbers)),
-                Values::Doubt => (column.name, ColumnArray::Doubts(std::mem::take(&mut self.doubt))),
+                ColumnValues::Position => {
+                    (column.name, ColumnArray::Positions(std::mem::take(&mut self.position)))
+                }
+                ColumnValues::Side => ("right", ColumnArray::Flags(std::mem::take(&mut self.right))),
+                ColumnValues::Contact => {
+                    (column.name, ColumnArray::Counts(std::mem::take(&mut self.contact)))
+                }
+                ColumnValues::Kink => (column.name, ColumnArray::Flags(std::mem::take(&mut self.kink))),
+                ColumnValues::Number(..) => (column.name, ColumnArray::Numbers(numbers)),
+                ColumnValues::Doubt => (column.name, ColumnArray::Doubts(std::mem::take(&mut self.doubt))),
             });
         }
         out

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::columns::Columns;
+use super::columns::SweepColumns;
 use super::conicity::{ConicityReport, FUNCTIONS, KEY_FIGURES};
 use super::conicity_noise::{UNCERTAIN, Uncertainty};
 use super::curves::curves;
@@ -157,19 +157,19 @@ fn wheelset(case: &Case) -> Result<&WheelsetOnTrack> {
 }
 
 /// Makes the picture, and the contacts that it shows.
-fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, Columns)> {
+fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, SweepColumns)> {
     let lateral = report.function("lateral_mm");
     let positions: Vec<Position> =
         lateral.iter().map(|&lateral| Position { lateral, yaw: 0.0, roll: report.roll }).collect();
     let selection = Selection { within: 0.0, apart: ONE_CONTACT };
     let system = wheelset(case)?;
     let sweep = ParallelSweep { system, selection, conicity: Some(&report.table), positions: &positions };
-    let mut columns = Columns::default();
-    let rows = |chunk: &mut Columns, position, rows: &[_]| {
+    let mut columns = SweepColumns::default();
+    let rows = |chunk: &mut SweepColumns, position, rows: &[_]| {
         rows.iter().for_each(|row| chunk.push(position, row, None, DoubtSet::default()));
         Ok(())
     };
-    sweep.blocks(rows, |_, chunks: Vec<Columns>| {
+    sweep.blocks(rows, |_, chunks: Vec<SweepColumns>| {
         chunks.iter().for_each(|chunk| columns.extend(chunk));
         Ok(true)
     })?;

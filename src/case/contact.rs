@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use serde::Serialize;
 
 use super::found::Found;
-use super::wheel::Region;
+use super::wheel::ContactRegion;
 use crate::error::{Error, Result};
 use crate::load::{Curvatures, Ellipse, Feasibility, Pressures, curvatures, feasibility};
 use crate::patch::{Patch, Window};
@@ -80,8 +80,8 @@ impl PlacedContact {
     ///
     /// # Errors
     /// The errors of [`PlacedContact::new`].
-    pub(super) fn of(region: Region, modulus: f64, load_s: f64) -> Result<Self> {
-        let Region { placement, approach, patch, loads, pressures, .. } = region;
+    pub(super) fn of(region: ContactRegion, modulus: f64, load_s: f64) -> Result<Self> {
+        let ContactRegion { placement, approach, patch, loads, pressures, .. } = region;
         let mut contact = Self::new(Arc::unwrap_or_clone(placement), Some(approach), modulus)?;
         if !loads.is_empty() {
             let ellipse = contact.curvatures.under_load(loads.iter().sum(), modulus);

@@ -1,6 +1,6 @@
 //! The usual curves of a sweep as a picture.
 
-use super::columns::Columns;
+use super::columns::SweepColumns;
 use crate::error::{Error, Result};
 use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, SEPARATOR, jumps};
 use crate::numerics::interval::Interval;
@@ -41,7 +41,7 @@ pub fn ascending(lateral: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// The error of [`ascending`].
-pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> Result<CurvesPicture> {
+pub fn curves(columns: &SweepColumns, lateral: &[f64], title: &str, about: &str) -> Result<CurvesPicture> {
     ascending(lateral)?;
     let lowest = Lowest::new(columns, lateral.len());
     // A side's contact jumps or not whatever quantity is drawn: all its panels are parted at the same positions.
@@ -94,7 +94,7 @@ pub fn curves(columns: &Columns, lateral: &[f64], title: &str, about: &str) -> R
 /// # Errors
 /// Values of the abscissa that do not ascend.
 pub(super) fn over(
-    (columns, beside): (&Columns, &[(&str, &[f64])]),
+    (columns, beside): (&SweepColumns, &[(&str, &[f64])]),
     (name, abscissa): (&str, &[f64]),
     quantities: &[(&str, &str, &str, f64)],
     (title, about): (&str, &str),
@@ -160,7 +160,7 @@ fn tread_range(curves: &[PlottedCurve], tread: &[bool]) -> Option<Interval> {
 
 /// The rows of the lowest contacts, by position and side.
 struct Lowest<'a> {
-    columns: &'a Columns,
+    columns: &'a SweepColumns,
     /// Columns beside those of a sweep, with their names.
     beside: &'a [(&'a str, &'a [f64])],
     /// Rows of the left and the right side of every position.
@@ -168,7 +168,7 @@ struct Lowest<'a> {
 }
 
 impl<'a> Lowest<'a> {
-    fn new(columns: &'a Columns, positions: usize) -> Self {
+    fn new(columns: &'a SweepColumns, positions: usize) -> Self {
         let mut rows = vec![[None; 2]; positions];
         for row in (0..columns.rows()).filter(|&row| columns.contact[row] == 1) {
             if let Some(sides) = rows.get_mut(columns.position[row] as usize) {

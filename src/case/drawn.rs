@@ -7,7 +7,7 @@ use super::pressure::PartPressure;
 use super::run::Part;
 use super::site::ends;
 use crate::export::{
-    Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, Pressed, QuadMesh, SEPARATOR,
+    Frame, Header, Loop, Nodes, PatchPicture, PicturedContact, QuadMesh, SEPARATOR, TrueContact,
 };
 use crate::mesh::{StripMesh, equal_steps};
 use crate::numerics::interval::Interval;
@@ -73,10 +73,10 @@ impl Drawn {
             separation: Nodes { xi: &self.xi, eta: &self.eta.eta, values: &self.separation },
             midplane: &self.midplane,
             loops,
-            pressed: self
-                .pressure
-                .as_ref()
-                .map(|found| Pressed { edges: &found.outline, largest: found.largest.pressure_n_per_mm2 }),
+            pressed: self.pressure.as_ref().map(|found| TrueContact {
+                edges: &found.outline,
+                largest: found.largest.pressure_n_per_mm2,
+            }),
         }
     }
 

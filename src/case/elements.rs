@@ -2,7 +2,7 @@
 
 use nalgebra::{Unit, Vector3};
 
-use super::formats::{Of, Writer};
+use super::formats::{SurfaceOf, Writer};
 use super::input::Outputs;
 use super::jobs::possible;
 use super::run::Part;
@@ -26,7 +26,8 @@ pub(super) fn surfaces_around(
     }
     let contact = &part.site.contact;
     let surfaces = || Surface::around(&contact.placement, &part.site.window(), contact.approach);
-    let of_bodies = |writer: &Writer| matches!(writer, Writer::Surface(Of::Rail | Of::Wheel, _));
+    let of_bodies =
+        |writer: &Writer| matches!(writer, Writer::Surface(SurfaceOf::Rail | SurfaceOf::Wheel, _));
     possible(outputs, names, of_bodies, surfaces, skipped)
 }
 
@@ -56,7 +57,8 @@ pub(super) fn triangles(
         return Ok(None);
     }
     let mesh = || patch_mesh(placement, patch, outputs.mesh_size);
-    let of_patch = |writer: &Writer| matches!(writer, Writer::Triangles(_) | Writer::Surface(Of::Patch, _));
+    let of_patch =
+        |writer: &Writer| matches!(writer, Writer::Triangles(_) | Writer::Surface(SurfaceOf::Patch, _));
     possible(outputs, names, of_patch, mesh, skipped)
 }
 

@@ -17,15 +17,15 @@ pub struct Fact {
 
 /// How a fact is said.
 enum Said {
-    Number(Number),
+    Number(FactNumber),
     /// A number that is not shown where it is 0.
-    Unless0(Number),
+    Unless0(FactNumber),
     /// A text; `None` where there is nothing to say.
     Text(fn(&Part) -> Option<String>),
 }
 
 /// A number of `summary.json`.
-struct Number {
+struct FactNumber {
     /// Where it stands there: keys with their unit, the outermost first.
     keys: &'static [&'static str],
     /// The number in that unit; `None` where there is none.
@@ -141,7 +141,7 @@ const fn number(
     shown: (f64, usize),
     value: fn(&Part) -> Option<f64>,
 ) -> Fact {
-    Fact { label, unit, said: Said::Number(Number { keys, value, shown }) }
+    Fact { label, unit, said: Said::Number(FactNumber { keys, value, shown }) }
 }
 
 const fn unless_0(
@@ -151,7 +151,7 @@ const fn unless_0(
     shown: (f64, usize),
     value: fn(&Part) -> Option<f64>,
 ) -> Fact {
-    Fact { label, unit, said: Said::Unless0(Number { keys, value, shown }) }
+    Fact { label, unit, said: Said::Unless0(FactNumber { keys, value, shown }) }
 }
 
 const fn text(label: &'static str, of: fn(&Part) -> Option<String>) -> Fact {
@@ -178,7 +178,7 @@ impl Fact {
     }
 }
 
-impl Number {
+impl FactNumber {
     fn text(&self, part: &Part) -> Option<String> {
         let (factor, decimals) = self.shown;
         (self.value)(part).map(|value| format!("{:.decimals$}", factor * value))

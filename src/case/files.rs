@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::drawn::{Drawn, loops_of, quads};
 use super::elements::{surface_mesh, surfaces_around, triangles};
-use super::formats::{Of, OutputFormat, Writer};
+use super::formats::{OutputFormat, SurfaceOf, Writer};
 use super::in_place::in_place;
 use super::input::Outputs;
 use super::jobs::{Job, bytes, contents, possible, stream, write_jobs};
@@ -150,7 +150,7 @@ fn with_jobs<T>(
     let (drawn, unrolled, loops) = (Drawn::new(part), Unrolled::new(part), loops(part));
     // What shows all parts of the run lies with the first.
     let first = run.parts.first().is_some_and(|first| std::ptr::eq(first, part));
-    let sources = Sources {
+    let sources = FileSources {
         header: &header,
         grid: &grid,
         curved: curved.as_ref(),
@@ -172,7 +172,7 @@ fn with_jobs<T>(
 }
 
 /// What the files of a part are written from.
-struct Sources<'a> {
+struct FileSources<'a> {
     header: &'a Header,
     grid: &'a GridFields<'a>,
     curved: Option<&'a CurvedFields<'a>>,
@@ -181,7 +181,7 @@ struct Sources<'a> {
     loops: &'a [Loop],
     strips: Option<QuadMesh>,
     triangles: Option<&'a PatchMesh>,
-    surfaces: Vec<(Of, SurfaceMesh)>,
+    surfaces: Vec<(SurfaceOf, SurfaceMesh)>,
     in_place: Option<InPlace>,
     /// The run, for the part with which its page lies.
     page: Option<&'a Run>,
@@ -223,17 +223,20 @@ fn surfaces_of(
     part: &Part,
     patch: Option<&PatchMesh>,
     bodies: Option<&[Surface; 2]>,
-) -> Vec<(Of, SurfaceMesh)> {
-    let patch = patch.map(|patch| (Of::Patch, patch.surface()));
+) -> Vec<(SurfaceOf, SurfaceMesh)> {
+    let patch = patch.map(|patch| (SurfaceOf::Patch, patch.surface()));
     let bodies = bodies.into_iter().flat_map(|[rail, wheel]| {
-        [(Of::Rail, surface_mesh("rail", part, rail)), (Of::Wheel, surface_mesh("wheel", part, wheel))]
+        [
+            (SurfaceOf::Rail, surface_mesh("rail", part, rail)),
+            (SurfaceOf::Wheel, surface_mesh("wheel", part, wheel)),
+        ]
     });
     patch.into_iter().chain(bodies).collect()
 }
 
 /// Makes the job of a file; `None` where what it is written from is not there.
-fn job<'a>(name: &'static str, writer: Writer, s: &'a Sources<'a>) -> Option<Job<'a>> {
-    let Sources { header, grid, gridded: Gridded { netcdf, deck, curved_deck }, .. } = s;
+fn job<'a>(name: &'static str, writer: Writer, s: &'a FileSources<'a>) -> Option<Job<'a>> {
+    let FileSources { header, grid, gridded: Gridded { netcdf, deck, curved_deck }, .. } = s;
     let (deck, curved_deck) = (deck.as_ref(), curved_deck.as_ref());
     Some(match writer {
         Writer::Grid(write) => stream(name, move |file| write(file, header, grid)),
@@ -303,7 +306,7 @@ fn job<'a>(name: &'static str, writer: Writer, s: &'a Sources<'a>) -> Option<Job
 }
 
 /// Makes the jobs of the files of every run: tables and pictures.
-fn always<'a>(part: &'a Part, s: &'a Sources<'a>, on_rail: Option<&'a OnRail<'a>>) -> Vec<Job<'a>> {
+fn always<'a>(part: &'a Part, s: &'a FileSources<'a>, on_rail: Option<&'a OnRail<'a>>) -> Vec<Job<'a>> {
     let placement = &part.site.contact.placement;
     let mut jobs = vec![
         bytes("boundary.csv", || Ok(boundary_csv(s.loops).into_bytes())),

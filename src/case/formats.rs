@@ -47,7 +47,7 @@ pub(super) enum Writer {
     /// The triangles of the patch.
     Triangles(fn(&Header, &PatchMesh) -> Result<Vec<u8>>),
     /// A triangulated surface.
-    Surface(Of, fn(&Header, &SurfaceMesh) -> Result<Vec<u8>>),
+    Surface(SurfaceOf, fn(&Header, &SurfaceMesh) -> Result<Vec<u8>>),
     /// All contacts in the axes of the track; written once for a run.
     InPlace(fn(&InPlace) -> Result<Vec<u8>>),
     /// The page of all contacts; written once for a run.
@@ -62,7 +62,7 @@ pub(super) enum Writer {
 
 /// What a surface is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Of {
+pub(super) enum SurfaceOf {
     /// The patch, on the rail.
     Patch,
     /// The rail around the patch.
@@ -99,26 +99,26 @@ impl Writer {
 }
 
 /// One file of a format: its name and its writer.
-pub(super) type File = (&'static str, Writer);
+pub(super) type FormatFile = (&'static str, Writer);
 
 /// The row of a format.
-pub(super) struct Format {
+pub(super) struct FormatRow {
     /// Whether it is written where the scene names no formats.
     pub unasked: bool,
     /// About how many bytes a point of a grid takes in its files.
     pub bytes_a_point: f64,
     /// Its files. One name with two writers is a file over the plane or over the rail's surface.
-    pub files: &'static [File],
+    pub files: &'static [FormatFile],
 }
 
 /// Makes the row of a format that is written where the scene names no formats.
-const fn unasked(bytes_a_point: f64, files: &'static [File]) -> Format {
-    Format { unasked: true, bytes_a_point, files }
+const fn unasked(bytes_a_point: f64, files: &'static [FormatFile]) -> FormatRow {
+    FormatRow { unasked: true, bytes_a_point, files }
 }
 
 /// Makes the row of a format that is written where the scene names it.
-const fn named(bytes_a_point: f64, files: &'static [File]) -> Format {
-    Format { unasked: false, bytes_a_point, files }
+const fn named(bytes_a_point: f64, files: &'static [FormatFile]) -> FormatRow {
+    FormatRow { unasked: false, bytes_a_point, files }
 }
 
 /// Makes an enum of formats of their rows: a text for the schema, the name, and the row.
@@ -134,7 +134,7 @@ macro_rules! formats {
             pub const ALL: &'static [Self] = &[$(Self::$name,)+];
 
             /// Gives the row of the format.
-            pub(super) fn row(self) -> &'static Format {
+            pub(super) fn row(self) -> &'static FormatRow {
                 match self {
                     $(Self::$name => const { &$row },)+
                 }
@@ -158,8 +158,8 @@ formats! {
             ("boundary.vtp", Writer::Loops(boundary_vtp)),
             ("strips.vtu", Writer::Strips(strips_vtu)),
             ("patch.vtu", Writer::Triangles(patch_vtu)),
-            ("rail.vtu", Writer::Surface(Of::Rail, surface_vtu)),
-            ("wheel.vtu", Writer::Surface(Of::Wheel, surface_vtu)),
+            ("rail.vtu", Writer::Surface(SurfaceOf::Rail, surface_vtu)),
+            ("wheel.vtu", Writer::Surface(SurfaceOf::Wheel, surface_vtu)),
             ("rails.vtp", Writer::InPlace(InPlace::rails_vtp)),
             ("wheels.vtp", Writer::InPlace(InPlace::wheels_vtp)),
             ("patches.vtp", Writer::InPlace(InPlace::patches_vtp)),
@@ -204,21 +204,21 @@ formats! {
         Abaqus = named(0.0, &[("patch.inp", Writer::Triangles(patch_inp))]),
         /// patch.stl, rail.stl, wheel.stl.
         Stl = named(0.0, &[
-            ("patch.stl", Writer::Surface(Of::Patch, surface_stl)),
-            ("rail.stl", Writer::Surface(Of::Rail, surface_stl)),
-            ("wheel.stl", Writer::Surface(Of::Wheel, surface_stl)),
+            ("patch.stl", Writer::Surface(SurfaceOf::Patch, surface_stl)),
+            ("rail.stl", Writer::Surface(SurfaceOf::Rail, surface_stl)),
+            ("wheel.stl", Writer::Surface(SurfaceOf::Wheel, surface_stl)),
         ]),
         /// patch.ply, rail.ply, wheel.ply.
         Ply = named(0.0, &[
-            ("patch.ply", Writer::Surface(Of::Patch, surface_ply)),
-            ("rail.ply", Writer::Surface(Of::Rail, surface_ply)),
-            ("wheel.ply", Writer::Surface(Of::Wheel, surface_ply)),
+            ("patch.ply", Writer::Surface(SurfaceOf::Patch, surface_ply)),
+            ("rail.ply", Writer::Surface(SurfaceOf::Rail, surface_ply)),
+            ("wheel.ply", Writer::Surface(SurfaceOf::Wheel, surface_ply)),
         ]),
         /// patch.vtp, rail.vtp, wheel.vtp.
         Vtp = named(0.0, &[
-            ("patch.vtp", Writer::Surface(Of::Patch, surface_vtp)),
-            ("rail.vtp", Writer::Surface(Of::Rail, surface_vtp)),
-            ("wheel.vtp", Writer::Surface(Of::Wheel, surface_vtp)),
+            ("patch.vtp", Writer::Surface(SurfaceOf::Patch, surface_vtp)),
+            ("rail.vtp", Writer::Surface(SurfaceOf::Rail, surface_vtp)),
+            ("wheel.vtp", Writer::Surface(SurfaceOf::Wheel, surface_vtp)),
         ]),
     }
 }

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::doubts::Doubt;
-use super::formats::{File, OutputFormat, Writer};
+use super::formats::{FormatFile, OutputFormat, Writer};
 use super::landmarks::SideLandmarks;
 use crate::conformal::Reference;
 use crate::error::{Error, Result};
@@ -285,7 +285,7 @@ pub struct Outputs {
 
 impl Outputs {
     /// Lists the files of the formats.
-    pub(super) fn files(&self) -> impl Iterator<Item = File> {
+    pub(super) fn files(&self) -> impl Iterator<Item = FormatFile> {
         let formats = OutputFormat::ALL.iter().filter(|format| self.formats.contains(format));
         formats.flat_map(|format| format.row().files).copied()
     }

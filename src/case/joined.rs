@@ -1,6 +1,6 @@
 //! A rail and a wheel over it, with the points joined at which they touch over a sweep.
 
-use super::columns::Columns;
+use super::columns::SweepColumns;
 use super::polylines::thinned;
 use crate::export::JoinedPair;
 use crate::placement::Pair;
@@ -18,7 +18,7 @@ const CLEARANCE: f64 = 12.0;
 
 /// Makes the picture of the right-hand pair of a sweep: the lowest contact of every position joins its points on the rail and on
 /// the wheel, which is raised. `gauge` is the abscissa of the gauge line in the rail profile's axes \[mm\].
-pub fn joined_pair(pair: &Pair, columns: &Columns, gauge: Option<f64>) -> JoinedPair {
+pub fn joined_pair(pair: &Pair, columns: &SweepColumns, gauge: Option<f64>) -> JoinedPair {
     let polyline = |profile: &Profile, up: f64| -> Vec<[f64; 2]> {
         let marks = thinned(&trace(profile, STEP), MOST_POINTS);
         marks.iter().map(|mark| [mark.station.x, mark.station.z + up]).collect()

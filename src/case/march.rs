@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::input::{Case, Echo, Profiles};
 use super::places::rows_under_load;
 use super::run::end_reached;
-use super::wheel::Region;
+use super::wheel::ContactRegion;
 use crate::error::{Result, in_order};
 use crate::search::{Event, March, Stop, SweepRow};
 
@@ -83,7 +83,7 @@ impl MarchRow {
     }
 
     /// Takes a place with the region that has its frame.
-    fn carrying(row: SweepRow, region: Option<&Region>) -> Self {
+    fn carrying(row: SweepRow, region: Option<&ContactRegion>) -> Self {
         region.map_or(Self::touching(row), |region| Self {
             row,
             approach: region.approach,

@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
-use super::columns::Columns;
+use super::columns::SweepColumns;
 use super::doubts::DoubtSet;
 use super::march::{MarchCourse, MarchRow, MarchStop};
 use crate::search::{Contact, Event};
 
 /// First line of the table of stops: the columns of a sweep between the place and [`MARCH_NUMBERS`].
 pub fn march_head(course: MarchCourse) -> String {
-    format!("{},{},{}\n", course.column, Columns::csv_head().trim_end(), MARCH_NUMBERS.join(","))
+    format!("{},{},{}\n", course.column, SweepColumns::csv_head().trim_end(), MARCH_NUMBERS.join(","))
 }
 
 /// Names of what a row has beside the columns of a sweep: pitch of the common tangent plane, approach and normal force.
@@ -21,7 +21,7 @@ pub struct MarchColumns {
     /// Where each row stands on the course \[mm\], or \[rad\].
     pub along: Vec<f64>,
     /// The columns of a sweep, stops being its positions.
-    pub columns: Columns,
+    pub columns: SweepColumns,
     /// [`MARCH_NUMBERS`]: the others but the pitch are NaN where a place carries nothing of its own.
     pub numbers: [Vec<f64>; MARCH_NUMBERS.len()],
 }

@@ -1,7 +1,7 @@
 //! What the page of measured profiles shows.
 
 use crate::export::{MeasuredPage, MeasuresPage};
-use crate::measure::{MeasureOptions, Overlay, Quantity, Row, RowColumns, in_micrometres, overlay};
+use crate::measure::{MeasureOptions, MeasureRow, Overlay, Quantity, RowColumns, in_micrometres, overlay};
 use crate::profile::{Profile, trace};
 
 /// Distance of the points of a profile without a nominal \[mm\].
@@ -9,7 +9,7 @@ const STEP: f64 = 0.25;
 
 /// Makes the page of rows, each with its profile, if it could be read, over the nominal one.
 pub fn measures_page(
-    rows: &[(Row, Option<&Profile>)],
+    rows: &[(MeasureRow, Option<&Profile>)],
     nominal: Option<&Profile>,
     options: &MeasureOptions,
     columns: RowColumns,
@@ -31,7 +31,7 @@ pub fn measures_page(
 }
 
 fn file(
-    row: &Row,
+    row: &MeasureRow,
     profile: Option<&Profile>,
     nominal: Option<&Profile>,
     options: &MeasureOptions,

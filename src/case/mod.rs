@@ -46,7 +46,7 @@ mod view;
 mod wheel;
 
 pub use analysis::{Analysis, Timings, check_method};
-pub use columns::{COLUMNS, Column, ColumnArray, Columns};
+pub use columns::{COLUMNS, ColumnArray, SweepColumn, SweepColumns};
 pub use conformal::Conformal;
 pub use conicity::{
     ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, conicity, contact_geometry,

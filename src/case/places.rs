@@ -8,7 +8,7 @@ use super::contact::PlacedContact;
 use super::found::{Found, PlaceOfContact};
 use super::input::{ApproachBy, Case, FrameOrigin, Place};
 use super::overlaps::RegionRules;
-use super::wheel::{OnLoft, Region, Wheel, carry, placed_at};
+use super::wheel::{ContactRegion, OnLoft, SinkingWheel, carry, placed_at};
 use crate::error::{Error, Result};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
@@ -26,7 +26,7 @@ const STEEPEST: f64 = 4.0;
 pub(super) const MOST_PARTS: usize = 100;
 
 /// A side of the track, or a single wheel, at first touch.
-struct Side {
+struct TouchedSide {
     /// `None` of a single wheel.
     side: Option<TrackSide>,
     height: f64,
@@ -55,7 +55,7 @@ pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
 pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Result<f64> {
     let pair = placement.pair();
     let rules = RegionRules { merge: 0.0, spacing: None, alone: true, frame: FrameOrigin::Contact };
-    let wheel = Wheel::at_points(&pair, placement.clone(), rules);
+    let wheel = SinkingWheel::at_points(&pair, placement.clone(), rules);
     let [.., most] = SEARCHED_GAPS;
     let carried = carry(&mut [wheel], load, modulus, most)?;
     let first = carried.and_then(|mut wheels| wheels.pop()?.pop());
@@ -77,7 +77,7 @@ pub fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedConta
             PlacedContact::new(placement, Some(approach), modulus)?
         }
         Some(by) => {
-            let mut wheel = Wheel::at_points(&case.profiles.right.pair, placement, rules(case, true));
+            let mut wheel = SinkingWheel::at_points(&case.profiles.right.pair, placement, rules(case, true));
             let [.., most] = SEARCHED_GAPS;
             let mut regions = match by {
                 ApproachBy::Given(approach) => wheel.regions(approach)?,
@@ -106,7 +106,7 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact
 ///
 /// # Errors
 /// No contact; a load that no approach carries; no roll that the loads settle at.
-pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<Region>)>> {
+pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<ContactRegion>)>> {
     let Place::Wheelset { position, .. } = &case.standing.place else { return Ok(Vec::new()) };
     let (sides, regions, _) = closed(case, case.question.approach)?;
     let radius =
@@ -137,7 +137,10 @@ pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<Regio
 }
 
 /// Lowers the wheels of a case and lets them sink: the sides, the regions of each, and the seconds that a load took.
-fn closed(case: &Case, approach: Option<ApproachBy>) -> Result<(Vec<Side>, Vec<Vec<Region>>, f64)> {
+fn closed(
+    case: &Case,
+    approach: Option<ApproachBy>,
+) -> Result<(Vec<TouchedSide>, Vec<Vec<ContactRegion>>, f64)> {
     let nearest = case.standing.within.max(match approach {
         Some(ApproachBy::Given(approach)) => STEEPEST * approach,
         _ => 0.0,
@@ -175,7 +178,12 @@ const SETTLED_ROLL: f64 = 1e-12;
 ///
 /// # Errors
 /// No contact; no roll at which the heights agree to [`SETTLED_ROLL`] in time, as where a steep flange carries.
-fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Result<(Vec<Side>, Carried)> {
+fn sunk(
+    case: &Case,
+    approach: Option<ApproachBy>,
+    most: f64,
+    within: f64,
+) -> Result<(Vec<TouchedSide>, Carried)> {
     let mut sides = sides(case, within, None)?;
     let each = match approach {
         Some(ApproachBy::AxleLoad(load)) if follows(case) => Some(ApproachBy::WheelLoad(load / 2.0)),
@@ -191,9 +199,9 @@ fn sunk(case: &Case, approach: Option<ApproachBy>, most: f64, within: f64) -> Re
     for _ in 0..MOST_ROLLS {
         let (Ok(carried), [right, left]) = (&found, sides.as_slice()) else { break };
         let heights = [right, left].map(|side| side.height);
-        let sunk = [0, 1].map(|k| carried[k].first().map_or(0.0, Region::sunk));
+        let sunk = [0, 1].map(|k| carried[k].first().map_or(0.0, ContactRegion::sunk));
         // A turn about the axle's middle lifts a contact by its lever, and a steep one by what it moves aside.
-        let steep = |side: &Side| side.places[0].rolling_radius * side.places[0].contact_angle.tan();
+        let steep = |side: &TouchedSide| side.places[0].rolling_radius * side.places[0].contact_angle.tan();
         let lever = spread + right.places[0].rail_x + left.places[0].rail_x - steep(right) - steep(left);
         let (here, miss) = (right.roll, (heights[1] - sunk[1]) - (heights[0] - sunk[0]));
         // Where a steep flange carries, what the wheels sink by depends on the roll as well: a secant knows.
@@ -237,7 +245,7 @@ fn follows(case: &Case) -> bool {
 
 /// Lowers a wheel or a wheelset, and gives the places of contact with vertical gaps up to `within` \[mm\]. The right-hand
 /// side, which is the one that is described, comes first. `roll` \[rad\] takes the place of a wheelset's own.
-fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
+fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<TouchedSide>> {
     let selection = Selection { within, apart: ONE_CONTACT };
     match &case.standing.place {
         Place::Points { .. } => Ok(Vec::new()),
@@ -245,12 +253,12 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
             let mut search = profiles.search();
             let touch = search.touch(pose, &selection)?;
             let places = touch.contacts.to_vec();
-            Ok(vec![Side { side: None, height: touch.height, roll: pose.roll(), places }])
+            Ok(vec![TouchedSide { side: None, height: touch.height, roll: pose.roll(), places }])
         }
         Place::OnSlices { pair, pose } => {
             let standing = [case.standing.along, case.standing.pitch];
             let (height, places) = pair.touch(pose, standing, &selection)?;
-            Ok(vec![Side { side: None, height, roll: pose.roll(), places }])
+            Ok(vec![TouchedSide { side: None, height, roll: pose.roll(), places }])
         }
         Place::Wheelset { system, position } => {
             let mut search = system.search();
@@ -260,7 +268,7 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
             let side = |side, k: usize| {
                 let found = &touch.sides[k];
                 let places = found.touch.contacts.to_vec();
-                Side { side: Some(side), height: found.z, roll: touch.roll, places }
+                TouchedSide { side: Some(side), height: found.z, roll: touch.roll, places }
             };
             Ok(vec![side(TrackSide::Right, 1), side(TrackSide::Left, 0)])
         }
@@ -268,13 +276,13 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<Side>> {
 }
 
 /// The regions of every side, or the side that does not carry its load; `None` of an axle and of a single wheel.
-type Carried = std::result::Result<Vec<Vec<Region>>, Option<TrackSide>>;
+type Carried = std::result::Result<Vec<Vec<ContactRegion>>, Option<TrackSide>>;
 
 /// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
-fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
+fn regions(case: &Case, sides: &[TouchedSide], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
     let rules = rules(case, false);
-    let wheel = |side: &Side| {
-        Wheel::over(&case.profiles.on(side.side).pair, on_loft(case, side.side), &side.places, rules)
+    let wheel = |side: &TouchedSide| {
+        SinkingWheel::over(&case.profiles.on(side.side).pair, on_loft(case, side.side), &side.places, rules)
     };
     let modulus = case.question.modulus();
     let mut all = Vec::new();
@@ -290,7 +298,7 @@ fn regions(case: &Case, sides: &[Side], approach: Option<ApproachBy>, most: f64)
             return regions(case, sides, Some(by), most);
         }
         Some(ApproachBy::WheelLoads { right, left }) => {
-            let carried = |side: &Side| {
+            let carried = |side: &TouchedSide| {
                 let load = if side.side == Some(TrackSide::Left) { left } else { right };
                 carry(&mut [wheel(side)], load, modulus, most)
             };
@@ -345,9 +353,9 @@ fn unborne(key: &str, load: f64, side: Option<TrackSide>) -> Error {
     Error::new(key, format!("{load} N{on}"), expected, advice)
 }
 
-impl Side {
+impl TouchedSide {
     /// Makes contacts of the regions; without any, which is without an approach, of the places within reach.
-    fn contacts(&self, case: &Case, regions: Vec<Region>, load_s: f64) -> Result<Vec<PlacedContact>> {
+    fn contacts(&self, case: &Case, regions: Vec<ContactRegion>, load_s: f64) -> Result<Vec<PlacedContact>> {
         let within = case.standing.within;
         let modulus = case.question.modulus();
         let of = |indices: &[usize]| indices.iter().map(|&k| PlaceOfContact::from(&self.places[k])).collect();

@@ -1,6 +1,6 @@
 //! What the page of a sweep or a march shows: the usual curves, and the pair of profiles at every position.
 
-use super::columns::Columns;
+use super::columns::SweepColumns;
 use super::curves::curves;
 use super::input::{Case, Profiles};
 use super::polylines::{page_cut, pairs};
@@ -25,7 +25,7 @@ pub(super) struct Shown<'a> {
     pub scene: &'a serde_json::Value,
     pub system: &'a WheelsetOnTrack,
     /// The contacts; there may be none at a position.
-    pub columns: &'a Columns,
+    pub columns: &'a SweepColumns,
     /// The positions on the axis of the curves, ascending.
     pub positions: &'a [f64],
     /// Where the wheelset stands at a position, of bodies that vary: along the track \[mm\], and its pitch \[rad\].
@@ -44,7 +44,7 @@ pub(super) struct Shown<'a> {
 pub fn sweep_page(
     case: &Case,
     system: &WheelsetOnTrack,
-    columns: &Columns,
+    columns: &SweepColumns,
     lateral: &[f64],
     about: &str,
 ) -> Result<SweepPage> {
@@ -57,7 +57,7 @@ pub fn sweep_page(
 pub(super) fn swept<'a>(
     case: &'a Case,
     system: &'a WheelsetOnTrack,
-    columns: &'a Columns,
+    columns: &'a SweepColumns,
     positions: &'a [f64],
 ) -> Shown<'a> {
     Shown {
@@ -205,13 +205,13 @@ mod tests {
             let lateral = [-6.0, 0.0, 3.0, 7.0];
             let positions = lateral.map(|lateral| Position { lateral, yaw, roll: Roll::Solve });
             let selection = Selection { within: 0.0, apart: ONE_CONTACT };
-            let mut columns = Columns::default();
+            let mut columns = SweepColumns::default();
             let sweep = ParallelSweep { system, selection, conicity: None, positions: &positions };
-            let rows = |chunk: &mut Columns, position, rows: &[_]| {
+            let rows = |chunk: &mut SweepColumns, position, rows: &[_]| {
                 rows.iter().for_each(|row| chunk.push(position, row, None, DoubtSet::default()));
                 Ok(())
             };
-            let all = |_, chunks: Vec<Columns>| {
+            let all = |_, chunks: Vec<SweepColumns>| {
                 chunks.iter().for_each(|chunk| columns.extend(chunk));
                 Ok(true)
             };

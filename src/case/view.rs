@@ -55,10 +55,10 @@ pub(super) fn view(run: &Run) -> ViewPage {
 }
 
 /// What a page says of a scene: word, key and unit of a value.
-type Said = (&'static str, &'static str, &'static str);
+type PageValue = (&'static str, &'static str, &'static str);
 
 /// Profiles, inclination, radius and gauge.
-const BODIES: [Said; 18] = [
+const BODIES: [PageValue; 18] = [
     ("rail ", "/rail/profile", ""),
     ("rail ", "/rail/file", ""),
     ("rail ", "/rail/segments", ""),
@@ -80,7 +80,7 @@ const BODIES: [Said; 18] = [
 ];
 
 /// The one position of a run.
-const POSITION: [Said; 4] = [
+const POSITION: [PageValue; 4] = [
     ("lateral ", "/wheelset/lateral", " mm"),
     ("offset ", "/contact/offset", " mm"),
     ("yaw ", "/wheelset/yaw", " rad"),
@@ -93,8 +93,8 @@ pub(crate) fn about_bodies(scene: &serde_json::Value) -> String {
 }
 
 /// Puts parts of a scene into words, as far as it gives them.
-fn about(scene: &serde_json::Value, parts: &[Said]) -> String {
-    let said = |(word, key, unit): &Said| {
+fn about(scene: &serde_json::Value, parts: &[PageValue]) -> String {
+    let said = |(word, key, unit): &PageValue| {
         let value = match scene.pointer(key)? {
             serde_json::Value::Null => return None,
             serde_json::Value::String(text) => text.clone(),

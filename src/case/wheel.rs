@@ -45,18 +45,18 @@ pub(super) fn placed_at(place: &search::Contact, pair: &Pair, on: Option<OnLoft<
 }
 
 /// A wheel over its rail, with the places where it may touch.
-pub(super) struct Wheel<'a> {
+pub(super) struct SinkingWheel<'a> {
     pair: &'a Pair,
     on: Option<OnLoft<'a>>,
     /// The first one touches first.
-    places: Vec<Reached>,
+    places: Vec<ReachedPlace>,
     rules: RegionRules,
     /// The pair in a frame whose ζ is vertical, once it was asked for.
     upright: Option<Placement>,
 }
 
 /// A place of contact that the wheel closes as it sinks.
-struct Reached {
+struct ReachedPlace {
     /// (x, z) on the rail \[mm\].
     rail: Point2<f64>,
     placing: Placing,
@@ -78,7 +78,7 @@ enum Placing {
 
 /// The parts of a patch that are one contact.
 #[derive(Debug, Clone)]
-pub(super) struct Region {
+pub(super) struct ContactRegion {
     /// Index of the place whose frame it has.
     pub place: usize,
     /// Indices of the other places inside.
@@ -95,7 +95,7 @@ pub(super) struct Region {
     pub pressures: Vec<Pressures>,
 }
 
-impl Region {
+impl ContactRegion {
     /// Finds the region of a place under its approach δ \[mm\].
     fn new(place: usize, placement: Arc<Placement>, approach: f64, rules: &RegionRules) -> Self {
         let patch = Patch::new(&placement, approach, &Window::UNBOUNDED);
@@ -131,7 +131,7 @@ impl Region {
     }
 
     /// Tells whether the group of parts around C, which lies at `y` \[mm\] along the rail, holds a place of contact.
-    fn holds(&self, place: &Reached, y: f64) -> bool {
+    fn holds(&self, place: &ReachedPlace, y: f64) -> bool {
         let xi = self.placement.rail().contact_frame().inverse_transform_point(&place.rail).x;
         let [xi, eta] = match self.placement.lofted() {
             None => return self.extents.first().is_some_and(|extent| extent.xi.contains(xi)),
@@ -155,7 +155,7 @@ impl Region {
     }
 }
 
-impl<'a> Wheel<'a> {
+impl<'a> SinkingWheel<'a> {
     /// Makes a wheel of the places that a search found, the lowest gap first.
     pub(super) fn over(
         pair: &'a Pair,
@@ -163,7 +163,7 @@ impl<'a> Wheel<'a> {
         places: &[search::Contact],
         rules: RegionRules,
     ) -> Self {
-        let reached = |place: &search::Contact| Reached {
+        let reached = |place: &search::Contact| ReachedPlace {
             rail: Point2::new(place.rail_x, place.rail_z),
             placing: Placing::Found(*place),
             gap: place.gap,
@@ -177,7 +177,7 @@ impl<'a> Wheel<'a> {
     /// Makes a wheel that touches at chosen points.
     pub(super) fn at_points(pair: &'a Pair, placement: Placement, rules: RegionRules) -> Self {
         let Station { x, z, .. } = placement.rail().point.station;
-        let place = Reached {
+        let place = ReachedPlace {
             rail: Point2::new(x, z),
             gap: 0.0,
             cos: placement.upright(),
@@ -192,7 +192,7 @@ impl<'a> Wheel<'a> {
     ///
     /// # Errors
     /// A place at which the pair cannot be placed.
-    pub(super) fn regions(&mut self, first_approach: f64) -> Result<Vec<Region>> {
+    pub(super) fn regions(&mut self, first_approach: f64) -> Result<Vec<ContactRegion>> {
         let sunk = self.places.first().map_or(0.0, |first| first_approach / first.cos);
         if self.rules.frame == FrameOrigin::Weighted {
             let regions = self.weighted(sunk)?;
@@ -200,19 +200,19 @@ impl<'a> Wheel<'a> {
                 return Ok(regions);
             }
         }
-        let mut regions: Vec<Region> = Vec::new();
+        let mut regions: Vec<ContactRegion> = Vec::new();
         for index in 0..self.places.len() {
             let place = &self.places[index];
             let approach = if index == 0 { first_approach } else { (sunk - place.gap) * place.cos };
             if index > 0 && approach <= 0.0 {
                 continue;
             }
-            let holds = |region: &&mut Region| region.holds(place, self.places[region.place].y);
+            let holds = |region: &&mut ContactRegion| region.holds(place, self.places[region.place].y);
             if let Some(region) = regions.iter_mut().find(holds) {
                 region.merged.push(index);
                 continue;
             }
-            regions.push(Region::new(index, self.placement(index)?, approach, &self.rules));
+            regions.push(ContactRegion::new(index, self.placement(index)?, approach, &self.rules));
         }
         Ok(regions)
     }
@@ -222,14 +222,14 @@ impl<'a> Wheel<'a> {
     ///
     /// # Errors
     /// A place at which the pair cannot be placed; a wheel with yaw over a roller.
-    fn weighted(&mut self, sunk: f64) -> Result<Vec<Region>> {
+    fn weighted(&mut self, sunk: f64) -> Result<Vec<ContactRegion>> {
         let upright = match self.upright.take() {
             Some(upright) => upright,
             None => upright(&*self.placement(0)?)?,
         };
         let parts = overlaps(&upright, sunk, &self.rules);
         let mut taken: Vec<Option<usize>> = vec![None; parts.len()];
-        let mut regions: Vec<Region> = Vec::new();
+        let mut regions: Vec<ContactRegion> = Vec::new();
         for index in 0..self.places.len() {
             let closed = sunk - self.places[index].gap;
             let xi = upright.rail().contact_frame().inverse_transform_point(&self.places[index].rail).x;
@@ -241,7 +241,12 @@ impl<'a> Wheel<'a> {
             }
             taken[k] = Some(regions.len());
             let touching = self.placement(index)?;
-            regions.push(Region::over((index, &touching), (&upright, &parts[k]), closed, &self.rules)?);
+            regions.push(ContactRegion::over(
+                (index, &touching),
+                (&upright, &parts[k]),
+                closed,
+                &self.rules,
+            )?);
         }
         self.upright = Some(upright);
         Ok(regions)
@@ -257,7 +262,7 @@ impl<'a> Wheel<'a> {
     }
 
     /// Finds the regions under an approach of the first place with the normal forces that they carry.
-    fn pressed(&mut self, first_approach: f64, modulus: f64) -> Result<Vec<Region>> {
+    fn pressed(&mut self, first_approach: f64, modulus: f64) -> Result<Vec<ContactRegion>> {
         let mut regions = self.regions(first_approach)?;
         let mut spaces = Vec::new();
         for region in &regions {
@@ -322,13 +327,13 @@ fn upright(placement: &Placement) -> Result<Placement> {
 /// # Errors
 /// A place at which the pair cannot be placed.
 pub(super) fn carry(
-    wheels: &mut [Wheel<'_>],
+    wheels: &mut [SinkingWheel<'_>],
     load: f64,
     modulus: f64,
     most: f64,
-) -> Result<Option<Vec<Vec<Region>>>> {
+) -> Result<Option<Vec<Vec<ContactRegion>>>> {
     if load == 0.0 {
-        let untouched = |wheel: &mut Wheel<'_>| {
+        let untouched = |wheel: &mut SinkingWheel<'_>| {
             let mut regions = wheel.regions(0.0)?;
             regions.truncate(1);
             Ok(regions)
@@ -341,14 +346,15 @@ pub(super) fn carry(
         guess += wheel.guess(load / count, modulus)? / count;
     }
     let mut failure = None;
-    let mut sink = |sunk: f64| -> Vec<Vec<Region>> {
+    let mut sink = |sunk: f64| -> Vec<Vec<ContactRegion>> {
         let pressed = wheels.iter_mut().map(|wheel| wheel.pressed(sunk * wheel.places[0].cos, modulus));
         pressed.collect::<Result<_>>().unwrap_or_else(|error| {
             failure = Some(error);
             Vec::new()
         })
     };
-    let vertical = |all: &[Vec<Region>]| all.iter().flatten().map(Region::vertical).sum::<f64>();
+    let vertical =
+        |all: &[Vec<ContactRegion>]| all.iter().flatten().map(ContactRegion::vertical).sum::<f64>();
     // What was found is mostly what was looked at last.
     let mut last = (f64::NAN, Vec::new());
     let total = |sunk| {

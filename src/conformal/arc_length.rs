@@ -39,21 +39,21 @@ pub struct RailPoint {
 #[derive(Debug, Clone)]
 pub struct RailArcLength<'a> {
     /// In order of σ.
-    stretches: Vec<Stretch<'a>>,
+    stretches: Vec<BranchStretch<'a>>,
 }
 
 /// A stretch of the rail over one branch.
 #[derive(Debug, Clone)]
-struct Stretch<'a> {
+struct BranchStretch<'a> {
     /// Range of σ \[mm\].
     sigma: Interval,
-    curve: Curve<'a>,
+    curve: StretchCurve<'a>,
     on_contact: bool,
 }
 
 /// The curve of a stretch, from a known point at a known σ.
 #[derive(Debug, Clone)]
-enum Curve<'a> {
+enum StretchCurve<'a> {
     /// A line or arc through a station.
     Arc { begin: f64, from: Station, radius: f64 },
     /// A polynomial through its point t.
@@ -87,7 +87,8 @@ impl<'a> RailArcLength<'a> {
             let piece = &section.pieces[index];
             let branch = &section.branches[piece.branch];
             let far = piece.xi[usize::from(forward)];
-            let stretch = Stretch::new(branch, section.contact == Some(piece.branch), far, from, forward);
+            let stretch =
+                BranchStretch::new(branch, section.contact == Some(piece.branch), far, from, forward);
             let sigma = stretch.sigma[usize::from(forward)];
             stretches.push(stretch);
             (far, sigma)
@@ -139,7 +140,7 @@ impl<'a> RailArcLength<'a> {
     }
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> BranchStretch<'a> {
     /// Makes the stretch of a branch from (ξ, σ) \[mm\] to the abscissa `far` \[mm\].
     fn new(branch: &'a Branch, on_contact: bool, far: f64, (xi, begin): (f64, f64), forward: bool) -> Self {
         let (curve, length) = match &branch.shape {
@@ -147,11 +148,11 @@ impl<'a> Stretch<'a> {
                 // The contact segment goes through C with no rounding.
                 let at_c = on_contact && xi == 0.0;
                 let from = if at_c { Station::AXES } else { branch.station(xi) };
-                (Curve::Arc { begin, from, radius: arc.radius }, arc_length(arc, &from, far))
+                (StretchCurve::Arc { begin, from, radius: arc.radius }, arc_length(arc, &from, far))
             }
             BranchShape::Polynomial(branch) => {
                 let t = if on_contact && xi == 0.0 { 0.0 } else { branch.parameter(xi) };
-                let curve = Curve::Polynomial { begin, t, branch };
+                let curve = StretchCurve::Polynomial { begin, t, branch };
                 (curve, run_length(branch, t, branch.parameter(far)))
             }
         };
@@ -179,7 +180,7 @@ fn run_length(branch: &PolynomialBranch, a: f64, b: f64) -> f64 {
     if a <= b { length } else { -length }
 }
 
-impl Curve<'_> {
+impl StretchCurve<'_> {
     /// Returns the point and tangent at σ \[mm\].
     fn station(&self, sigma: f64) -> Station {
         match self {

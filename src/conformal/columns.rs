@@ -9,7 +9,7 @@ use super::arc_length::RailPoint;
 use super::gap::NormalGap;
 use super::ray::{Ray, RayBodies};
 use super::sight::{point, searched};
-use super::span::{RayPoints, RaySpan, Reach, points};
+use super::span::{RayPoints, RaySpan, SpanReach, points};
 use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
@@ -80,7 +80,7 @@ fn fill_over_profile(
     let length = axis.eta().len();
     let demand = Demand::for_tolerance(tolerance).on_truncation();
     let block = |(out, sigma): (&mut [f64], &[f64])| {
-        let mut columns = Columns::new(gap, axis, demand);
+        let mut columns = BlockColumns::new(gap, axis, demand);
         columns.fill(sigma, out);
         columns.error
     };
@@ -92,7 +92,7 @@ fn fill_over_profile(
 }
 
 /// The columns of one block.
-struct Columns<'g, 'a> {
+struct BlockColumns<'g, 'a> {
     gap: &'g NormalGap<'a>,
     axis: &'g EtaAxis,
     demand: Demand,
@@ -103,7 +103,7 @@ struct Columns<'g, 'a> {
     error: f64,
 }
 
-impl<'g, 'a> Columns<'g, 'a> {
+impl<'g, 'a> BlockColumns<'g, 'a> {
     fn new(gap: &'g NormalGap<'a>, axis: &'g EtaAxis, demand: Demand) -> Self {
         Self { gap, axis, demand, arch: pulp::Arch::new(), count: FIRST_COUNT, error: 0.0 }
     }
@@ -172,7 +172,7 @@ impl<'g, 'a> Columns<'g, 'a> {
         let (mut next, reach) = (first, self.axis.reach);
         let (mut from, mut end) = (0.0, f64::INFINITY);
         while let Some(span) = next {
-            let Reach { run, u } = span.reach(from, reach);
+            let SpanReach { run, u } = span.reach(from, reach);
             if u.has_width() || u.low == 0.0 {
                 self.over_span(&span, run, u, out);
             }
@@ -190,7 +190,7 @@ impl<'g, 'a> Columns<'g, 'a> {
 
     /// Evaluates one span between two u \[mm²\], by its polynomial or else point by point.
     fn over_span(&mut self, span: &RaySpan<'_>, run: f64, u: Interval, out: &mut [f64]) {
-        let fitter = Fit { span, run, demand: self.demand, least: self.count };
+        let fitter = SpanFit { span, run, demand: self.demand, least: self.count };
         let fit = self.arch.dispatch(fitter);
         if let Some(fit) = &fit {
             self.count = fit.n;
@@ -269,7 +269,7 @@ impl<'a> pulp::WithSimd for Firsts<'_, 'a> {
 }
 
 /// The fit of one span. The work is compiled for each kind of machine.
-struct Fit<'f, 'a> {
+struct SpanFit<'f, 'a> {
     span: &'f RaySpan<'a>,
     /// e at the end less e at the beginning \[mm\].
     run: f64,
@@ -278,7 +278,7 @@ struct Fit<'f, 'a> {
     least: usize,
 }
 
-impl pulp::WithSimd for Fit<'_, '_> {
+impl pulp::WithSimd for SpanFit<'_, '_> {
     type Output = Option<ColumnPolynomial>;
 
     /// Fits q in powers of v. Returns `None` if no degree reaches the demand, near a vertical tangent.
@@ -297,7 +297,7 @@ impl pulp::WithSimd for Fit<'_, '_> {
     }
 }
 
-impl Fit<'_, '_> {
+impl SpanFit<'_, '_> {
     /// Fits n coefficients, with N lanes for the nodes and for the places where the error is measured. Returns `None` if the
     /// error is above the demand.
     #[inline(always)]

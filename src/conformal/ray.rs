@@ -7,14 +7,14 @@ use super::arc_length::RailPoint;
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Branch, ONE_JOINT, Piece, Section};
-use crate::separation::{Surface, sagitta};
+use crate::separation::{WheelSurface, sagitta};
 
 /// The bodies over which rays are cast, with what all rays share.
 #[derive(Debug, Clone)]
 pub struct RayBodies<'a> {
     placement: &'a Placement,
     /// The wheel.
-    pub wheel: Surface<'a>,
+    pub wheel: WheelSurface<'a>,
     /// sin χ.
     skew_sin: f64,
     /// cos χ.
@@ -53,7 +53,7 @@ impl<'a> RayBodies<'a> {
     pub fn new(placement: &'a Placement) -> Self {
         let skew = placement.skew_rotation();
         let versine = 2.0 * (placement.skew() / 2.0).sin().powi(2);
-        let wheel = Surface::new(placement);
+        let wheel = WheelSurface::new(placement);
         let frame = &wheel.section.frame;
         let size = placement.wheel().profile().extent() + frame.x.abs() + frame.z.abs();
         let steps = wheel.section.steps();

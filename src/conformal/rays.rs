@@ -15,7 +15,7 @@ const SETTLED: f64 = 2.0;
 
 /// Where rays begin to follow a piece.
 #[derive(Debug, Clone, Copy)]
-pub struct Beginning<const N: usize> {
+pub struct RayStart<const N: usize> {
     /// t \[mm\].
     pub t: Lanes<N>,
     /// Sagitta e \[mm\].
@@ -26,12 +26,12 @@ pub struct Beginning<const N: usize> {
     pub over_contact: bool,
 }
 
-impl<const N: usize> Beginning<N> {
+impl<const N: usize> RayStart<N> {
     /// Returns that of one ray.
     #[inline(always)]
-    pub fn lane(&self, k: usize) -> Beginning<1> {
+    pub fn lane(&self, k: usize) -> RayStart<1> {
         let Self { t, e, points, over_contact } = self;
-        Beginning { t: [t[k]], e: [e[k]], points: points.lane(k), over_contact: *over_contact }
+        RayStart { t: [t[k]], e: [e[k]], points: points.lane(k), over_contact: *over_contact }
     }
 }
 
@@ -49,7 +49,7 @@ pub struct Met<const N: usize> {
 /// Finds where rays meet a piece in the wheel's own midplane, e = 0. Under skew all come from one point of the rail. Returns
 /// `None` where one misses it, and if N > 1 and not all have the accuracy of the contact segments or none.
 #[inline(always)]
-pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
+pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<RayStart<N>> {
     let (bodies, n) = (rays[0].bodies, directions(rays));
     let piece = &rays[0].pieces()[index];
     let branch = rays[0].branch(piece);
@@ -87,7 +87,7 @@ pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<
         Some(parameters) => branch.points_of(&parameters)?,
         None => branch.points(&lanes(|k| rays[k].p[0] + t[k] * n[0][k]))?.0,
     };
-    Some(Beginning { t, e: [0.0; N], points, over_contact: over.is_some() })
+    Some(RayStart { t, e: [0.0; N], points, over_contact: over.is_some() })
 }
 
 /// Returns the directions n′ of rays.
@@ -98,7 +98,7 @@ fn directions<const N: usize>(rays: &[Ray<'_>; N]) -> [Lanes<N>; 2] {
 
 /// Finds where the columns of rays enter a piece at its near end. Returns `None` unless all of them do.
 #[inline(always)]
-pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beginning<N>> {
+pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<RayStart<N>> {
     let [near, _] = rays[0].sides();
     let piece = &rays[0].pieces()[index];
     let (begin, zeta) = rays[0].section().end(piece, near);
@@ -107,7 +107,7 @@ pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beg
         return None;
     }
     let t = lanes(|k| rays[k].t_through([piece.xi[near], zeta], e[k]));
-    Some(Beginning { t, e, points: begin.repeated(), over_contact: false })
+    Some(RayStart { t, e, points: begin.repeated(), over_contact: false })
 }
 
 /// Finds the points of the wheel at the rays' own η′ over a branch. Returns `None` where a ray misses the branch or its steps
@@ -115,7 +115,7 @@ pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Beg
 ///
 /// Method: the sagitta from t and t from the sagitta in turn.
 #[inline(always)]
-pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &Beginning<N>) -> Option<Met<N>> {
+pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &RayStart<N>) -> Option<Met<N>> {
     let (wheel, n) = (&rays[0].bodies.wheel, directions(rays));
     let (mut t, mut e) = (begin.t, begin.e);
     let mut w: Lanes<N> = lanes(|k| rays[k].axle_distance(t[k]));

@@ -26,7 +26,7 @@ struct Sight<'r, 'a> {
 
 /// A point of the profile beside a ray.
 #[derive(Debug, Clone, Copy)]
-struct Beside {
+struct BesideRay {
     /// Abscissa of the point \[mm\].
     xi: f64,
     /// How far it lies beside the ray \[mm\], towards larger ξ.
@@ -78,7 +78,7 @@ impl Sight<'_, '_> {
     }
 
     /// Computes how far a point of the profile lies beside the ray. What is far off has fewer digits: its sign counts.
-    fn beside(&self, at: [f64; 2]) -> Beside {
+    fn beside(&self, at: [f64; 2]) -> BesideRay {
         let (ray, mut e) = (self.ray, self.own);
         let (own, mut by) = (ray.beside(at), f64::NAN);
         for _ in 0..STEPS {
@@ -90,7 +90,7 @@ impl Sight<'_, '_> {
             }
             e = next;
         }
-        Beside { xi: at[0], by }
+        BesideRay { xi: at[0], by }
     }
 
     /// Computes the sagitta \[mm\] of the ray's point at t \[mm\], and whether the step there from the last one is a rounding.
@@ -101,7 +101,7 @@ impl Sight<'_, '_> {
     }
 
     /// Computes how far the end of a piece lies beside the ray; 0 is the end at smaller ξ.
-    fn end_beside(&self, index: usize, end: usize) -> Option<Beside> {
+    fn end_beside(&self, index: usize, end: usize) -> Option<BesideRay> {
         let piece = self.ray.pieces().get(index)?;
         Some(self.beside([piece.xi[end], piece.heights[end]]))
     }
@@ -129,7 +129,7 @@ impl Sight<'_, '_> {
 
     /// Finds where the profile is followed from: a piece, a place of it, and whether towards larger ξ. `None` where the ray leads
     /// away from the profile, or passes its end in the material.
-    fn beginning(&self) -> Option<(usize, Beside, bool)> {
+    fn beginning(&self) -> Option<(usize, BesideRay, bool)> {
         let (ray, from) = (self.ray, self.ray.p[0] - self.own * self.ray.bodies.wheel.sin);
         let leans_right = ray.n[0] > 0.0;
         let at = ray.pieces().partition_point(|piece| piece.xi.high < from);
@@ -144,7 +144,7 @@ impl Sight<'_, '_> {
     }
 
     /// Lists the places of a piece from an abscissa \[mm\] to its far end between which it does not turn back across the ray.
-    fn places(&self, index: usize, from: f64, rises: bool) -> Vec<Beside> {
+    fn places(&self, index: usize, from: f64, rises: bool) -> Vec<BesideRay> {
         let (ray, piece) = (self.ray, &self.ray.pieces()[index]);
         let branch = ray.branch(piece);
         let mut all = Vec::new();

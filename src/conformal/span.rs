@@ -3,7 +3,7 @@
 use super::arc_length::RailPoint;
 use super::meeting::along_by;
 use super::ray::{Ray, RayBodies};
-use super::rays::{Beginning, Met, at_joint, in_midplane, meet};
+use super::rays::{Met, RayStart, at_joint, in_midplane, meet};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::Branch;
@@ -16,7 +16,7 @@ pub struct RaySpan<'a> {
     /// Index of the piece of the wheel's profile.
     piece: usize,
     branch: &'a Branch,
-    begin: Beginning<1>,
+    begin: RayStart<1>,
     /// Axle distance at the beginning \[mm\].
     w: f64,
     /// e at the end \[mm\]; may be infinite.
@@ -46,7 +46,7 @@ pub struct RayPoint {
 
 /// How far a span reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+pub struct SpanReach {
     /// e at the end less e at the beginning \[mm\].
     pub run: f64,
     /// Range of u \[mm²\] over which the span counts.
@@ -148,7 +148,7 @@ impl<'a> RaySpan<'a> {
         }
     }
 
-    fn over(ray: &Ray<'a>, piece: usize, begin: Beginning<1>, from: f64, joint: bool) -> Self {
+    fn over(ray: &Ray<'a>, piece: usize, begin: RayStart<1>, from: f64, joint: bool) -> Self {
         let branch = ray.branch(&ray.pieces()[piece]);
         let (w, end) = (ray.axle_distance(begin.t[0]), ray.leaves(piece));
         Self { ray: *ray, piece, branch, begin, w, end, from, joint }
@@ -193,7 +193,7 @@ impl<'a> RaySpan<'a> {
 
     /// Finds how far the span reaches. `before` is the u \[mm²\] at which the previous span ended, and `eta` \[mm\] the
     /// farthest place that counts; for a wheel without skew.
-    pub fn reach(&self, before: f64, eta: f64) -> Reach {
+    pub fn reach(&self, before: f64, eta: f64) -> SpanReach {
         let (e0, u_max) = (self.begin.e[0], eta * eta);
         let begin = if self.joint && self.from == e0 {
             // Two spans meet at one joint, in spite of rounding.
@@ -205,14 +205,14 @@ impl<'a> RaySpan<'a> {
             let w = self.ray.axle_distance(self.t_at_end());
             let end = self.end * (2.0 * w + self.end);
             if w > 0.0 && end < u_max {
-                return Reach { run: self.end - e0, u: Interval::new(begin, end.max(begin)) };
+                return SpanReach { run: self.end - e0, u: Interval::new(begin, end.max(begin)) };
             }
         }
         // t grows by about e − e₀ over the cosine between the normal and the axle's plane; its square enters w.
         let down = self.ray.down;
         let near = sagitta(self.w, u_max);
         let e = sagitta(self.w - (near - e0) * down * down, u_max);
-        Reach { run: e - e0, u: Interval::new(begin, u_max) }
+        SpanReach { run: e - e0, u: Interval::new(begin, u_max) }
     }
 
     /// Returns t at the beginning \[mm\].

@@ -42,8 +42,8 @@ pub use netcdf::{NetCdf, table_nc};
 pub use npy::array_npy;
 pub use picture::{
     BandPicture, BandPoint, Chart, ConformalPicture, CurvesMap, CurvesPanel, CurvesPicture, JoinedPair,
-    Nodes, OverlayPicture, PatchPicture, PicturedContact, PlottedCurve, Pressed, ProfilePicture, RailNormal,
-    SEPARATOR, Series, jumps,
+    Nodes, OverlayPicture, PatchPicture, PicturedContact, PlottedCurve, ProfilePicture, RailNormal,
+    SEPARATOR, Series, TrueContact, jumps,
 };
 pub use ply::surface_ply;
 pub use stl::surface_stl;

@@ -28,7 +28,7 @@ pub(super) enum Source {
 
 /// A wheelset; arrays are \[left, right\].
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Wheelset {
+pub(super) struct ListedWheelset {
     pub name: String,
     pub wheels: [Source; 2],
     /// Nominal rolling radii \[mm\]; `None` for the scene's.
@@ -60,14 +60,14 @@ impl Source {
 ///
 /// # Errors
 /// A folder without files; anything wrong with the table, with its line.
-pub(super) fn wheelsets(path: &Path) -> Result<Vec<Wheelset>> {
+pub(super) fn wheelsets(path: &Path) -> Result<Vec<ListedWheelset>> {
     if !path.is_dir() {
         let text = read_text(path, LARGEST_TABLE)?;
         return table(&text, path.parent().unwrap_or(Path::new("")))
             .map_err(|error| error.within(path.display()));
     }
     let files = files_in(path)?;
-    let wheelset = |file: PathBuf| Wheelset {
+    let wheelset = |file: PathBuf| ListedWheelset {
         name: file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         wheels: [Source::File(file.clone()), Source::File(file)],
         radii: [None; 2],
@@ -105,7 +105,7 @@ fn some(folder: &Path, files: Vec<PathBuf>) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-fn table(text: &str, folder: &Path) -> Result<Vec<Wheelset>> {
+fn table(text: &str, folder: &Path) -> Result<Vec<ListedWheelset>> {
     let unreadable = |error: csv::Error| {
         let expected = "rows with as many cells as the first line";
         Error::new("table", error.to_string(), expected, "correct the file")
@@ -137,7 +137,7 @@ fn wheelset<'a>(
     cell: impl Fn(usize) -> Option<&'a str>,
     decimal_commas: bool,
     folder: &Path,
-) -> Result<Wheelset> {
+) -> Result<ListedWheelset> {
     let needed = |k: usize| {
         cell(k).ok_or_else(|| Error::new(COLUMNS[k], "an empty cell", "a name", "give it, or drop the line"))
     };
@@ -157,7 +157,7 @@ fn wheelset<'a>(
             return Err(Error::new("rail_left, rail_right", "one of them", expected, "give both"));
         }
     };
-    Ok(Wheelset {
+    Ok(ListedWheelset {
         name: needed(0)?.into(),
         wheels: [Source::of(needed(1)?, folder), Source::of(needed(2)?, folder)],
         radii: [radius(3)?, radius(4)?],

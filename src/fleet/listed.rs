@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use super::list::{Source, Wheelset};
+use super::list::{ListedWheelset, Source};
 use crate::scene::{self, Scene};
 
 /// The wheelsets and the sections, of which no profile was read.
@@ -11,7 +11,7 @@ use crate::scene::{self, Scene};
 pub(super) struct Listed {
     pub scene: Scene,
     pub folder: PathBuf,
-    pub wheelsets: Vec<Wheelset>,
+    pub wheelsets: Vec<ListedWheelset>,
     /// The sections; `None` stands for each wheelset's own rails, or the scene's.
     pub sections: Vec<Option<Source>>,
 }
@@ -25,7 +25,7 @@ impl Listed {
 
 /// Where a pair stands in a fleet.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Number {
+pub(super) struct PairNumber {
     pub wheelset: usize,
     pub section: usize,
 }
@@ -39,10 +39,10 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// All of them, section by section.
-    pub fn all(&self) -> impl Iterator<Item = Number> {
+    pub fn all(&self) -> impl Iterator<Item = PairNumber> {
         let sections = self.sections.clone();
         self.wheelsets
             .clone()
-            .flat_map(move |wheelset| sections.clone().map(move |section| Number { wheelset, section }))
+            .flat_map(move |wheelset| sections.clone().map(move |section| PairNumber { wheelset, section }))
     }
 }

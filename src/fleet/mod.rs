@@ -30,8 +30,8 @@ use crate::placement::Pair;
 use crate::profile::standards;
 use crate::scene::{self, ProfileData, Scene};
 use crate::search::Roll;
-use listed::{Listed, Number, Pairs};
-use part::Part;
+use listed::{Listed, PairNumber, Pairs};
+use part::FleetPart;
 use profiles::Shelf;
 
 /// Pairs of a part: some seconds of work.
@@ -77,7 +77,7 @@ pub struct Fleet {
 
 /// What became of a fleet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Outcome {
+pub struct FleetOutcome {
     /// Number of pairs: wheelsets on sections.
     pub pairs: usize,
     /// Pairs that have an equivalent conicity at 3 mm.
@@ -147,7 +147,11 @@ impl Fleet {
     ///
     /// # Errors
     /// A folder with other files; any error of the disk or of `tell`. What is wrong with a profile is in its row.
-    pub fn run(&self, out: &Path, tell: &(dyn Fn(usize, usize) -> Result<()> + Sync)) -> Result<Outcome> {
+    pub fn run(
+        &self,
+        out: &Path,
+        tell: &(dyn Fn(usize, usize) -> Result<()> + Sync),
+    ) -> Result<FleetOutcome> {
         let folder = self.opened(out)?;
         let parts = folder.part(PARTS)?;
         let split = self.split();
@@ -155,16 +159,16 @@ impl Fleet {
         let (mut shelf, mut kept, mut changed, mut done) = (Shelf::default(), 0, 0, 0);
         for (number, pairs) in split.iter().enumerate() {
             match self.write_part(&parts, number, pairs, &mut shelf, (done, tell))? {
-                Written::Kept => kept += 1,
-                Written::Changed => changed += 1,
-                Written::New => {}
+                PartWritten::Kept => kept += 1,
+                PartWritten::Changed => changed += 1,
+                PartWritten::New => {}
             }
             done += pairs.all().count();
             tell(done, self.pairs())?;
         }
         parts.remove(|name| part::is_part(name) && !own.contains(name))?;
         let (pairs, with_conicity, with_finding) = page::write(&self.listed, &folder, &parts, &split)?;
-        Ok(Outcome { pairs, with_conicity, with_finding, kept, changed })
+        Ok(FleetOutcome { pairs, with_conicity, with_finding, kept, changed })
     }
 
     /// Computes one part, from 0, unless it is there: what one of many machines does, before [`Fleet::run`] on one of them.
@@ -209,11 +213,11 @@ impl Fleet {
         pairs: &Pairs,
         shelf: &mut Shelf,
         (before, tell): (usize, &(dyn Fn(usize, usize) -> Result<()> + Sync)),
-    ) -> Result<Written> {
+    ) -> Result<PartWritten> {
         let (hash, name) = (profiles::hash(&self.listed, pairs), part::name(number));
-        let there = Part::hash_of(&parts.file(&name));
+        let there = FleetPart::hash_of(&parts.file(&name));
         if there.as_ref() == Some(&hash) {
-            return Ok(Written::Kept);
+            return Ok(PartWritten::Kept);
         }
         shelf.fill(&self.listed, pairs);
         let done = AtomicUsize::new(before);
@@ -221,15 +225,15 @@ impl Fleet {
             let row = pair::row(&self.listed, shelf, number);
             tell(done.fetch_add(1, Ordering::Relaxed) + 1, self.pairs()).map(|()| row)
         };
-        let all: Vec<Number> = pairs.all().collect();
+        let all: Vec<PairNumber> = pairs.all().collect();
         let rows = in_order(all.into_par_iter().map(row))?;
-        parts.write(&name, &Part::new(hash, rows).bytes())?;
-        Ok(if there.is_some() { Written::Changed } else { Written::New })
+        parts.write(&name, &FleetPart::new(hash, rows).bytes())?;
+        Ok(if there.is_some() { PartWritten::Changed } else { PartWritten::New })
     }
 }
 
 /// What was done about a part.
-enum Written {
+enum PartWritten {
     New,
     Kept,
     Changed,

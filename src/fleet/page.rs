@@ -3,11 +3,11 @@
 use serde_json::json;
 
 use super::listed::{Listed, Pairs};
-use super::pair::{self, Row, numbers, wheelset};
-use super::part::{self, Part};
+use super::pair::{self, FleetRow, numbers, wheelset};
+use super::part::{self, FleetPart};
 use super::profiles::Shelf;
-use super::tally::{Tally, WorstPair, rails};
-use crate::case::{Case, Columns, DoubtSet, about_bodies, sweep_page};
+use super::tally::{FleetTally, WorstPair, rails};
+use crate::case::{Case, DoubtSet, SweepColumns, about_bodies, sweep_page};
 use crate::error::{Error, Result};
 use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
 use crate::files::{KeptFolder, NewFile};
@@ -39,12 +39,12 @@ pub(super) fn write(
     split: &[Pairs],
 ) -> Result<(usize, usize, usize)> {
     let mut table = NewFile::create(&folder.file("fleet.csv"))?;
-    let mut tally = Tally::default();
+    let mut tally = FleetTally::default();
     let names = numbers();
     let head = NAMES.into_iter().chain(names.iter().map(String::as_str)).chain(["finding"]);
     table.put(&csv(std::iter::once(head.map(String::from).collect()))?)?;
     for (number, pairs) in split.iter().enumerate() {
-        let part = Part::read(&parts.file(&part::name(number)))?;
+        let part = FleetPart::read(&parts.file(&part::name(number)))?;
         table.put(&csv(part.rows.iter().map(cells))?)?;
         tally.add(&part, pairs.all());
     }
@@ -68,13 +68,13 @@ fn csv(rows: impl Iterator<Item = Vec<String>>) -> Result<Vec<u8>> {
     writer.into_inner().map_err(|error| failed(&error))
 }
 
-fn cells(row: &Row) -> Vec<String> {
+fn cells(row: &FleetRow) -> Vec<String> {
     let number = |value: &Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let numbers = row.radii.iter().chain(&row.values).map(number);
     row.names.iter().cloned().chain(numbers).chain([row.finding.clone()]).collect()
 }
 
-fn summary(fleet: &Listed, title: &str, tally: &Tally) -> serde_json::Value {
+fn summary(fleet: &Listed, title: &str, tally: &FleetTally) -> serde_json::Value {
     let worst = tally.worst.iter().enumerate().map(|(k, pair)| {
         json!({ "wheelset": pair.row.names[0], "rails": rails(&pair.row), "conicity": pair.conicity, "page": page_name(k) })
     });
@@ -100,9 +100,9 @@ fn worst_name(k: usize) -> String {
     format!("worst-{:02}.html", k + 1)
 }
 
-fn page(fleet: &Listed, title: &str, tally: &Tally, rail: Option<PageProfile>) -> FleetPage {
+fn page(fleet: &Listed, title: &str, tally: &FleetTally, rail: Option<PageProfile>) -> FleetPage {
     let names = numbers();
-    let value = |row: &Row, name: &str| {
+    let value = |row: &FleetRow, name: &str| {
         let value = names.iter().position(|own| own == name).and_then(|k| row.values[k]);
         value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"))
     };
@@ -182,13 +182,13 @@ fn swept(case: &Case, pair: &WorstPair) -> Result<Vec<u8>> {
     let conicity = Conicity::new(system, STEP * f64::from(DRAWN), template.roll)?;
     let selection = Selection { within: 0.0, apart: ONE_CONTACT };
     let sweep = ParallelSweep { system, selection, conicity: Some(&conicity), positions: &positions };
-    let mut columns = Columns::default();
+    let mut columns = SweepColumns::default();
     sweep.blocks(
-        |chunk: &mut Columns, number, rows| {
+        |chunk: &mut SweepColumns, number, rows| {
             rows.iter().for_each(|row| chunk.push(number, row, None, DoubtSet::default()));
             Ok(())
         },
-        |_, chunks: Vec<Columns>| {
+        |_, chunks: Vec<SweepColumns>| {
             chunks.iter().for_each(|chunk| columns.extend(chunk));
             Ok(true)
         },

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::list::Source;
-use super::listed::{Listed, Number};
+use super::listed::{Listed, PairNumber};
 use super::profiles::{Key, Shelf, data, keys};
 use crate::case::{Case, Place, Profiles, SideProfiles};
 use crate::error::{Error, Result};
@@ -40,7 +40,7 @@ const SIDES: [&str; 2] = ["left", "right"];
 
 /// A row of the table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Row {
+pub(super) struct FleetRow {
     /// Wheelset, left and right wheel, left and right rail.
     pub names: [String; 5],
     /// Radii \[mm\], where they are known.
@@ -66,16 +66,16 @@ pub(super) fn numbers() -> Vec<String> {
 }
 
 /// Computes the row of a pair. Whatever is wrong is its finding.
-pub(super) fn row(fleet: &Listed, shelf: &Shelf, number: Number) -> Row {
+pub(super) fn row(fleet: &Listed, shelf: &Shelf, number: PairNumber) -> FleetRow {
     let [rails, wheels] = keys(fleet, number);
     let wheelset = &fleet.wheelsets[number.wheelset];
     let name = |key: &Key| key.source.to_string();
     let mut findings = Vec::new();
     let measures = [0, 1].map(|k| measured(shelf, &wheels[k], SIDES[k], &mut findings));
-    let found = case(fleet, shelf, number).and_then(|case| Found::of(fleet, &case));
+    let found = case(fleet, shelf, number).and_then(|case| FoundContact::of(fleet, &case));
     let found = found.unwrap_or_else(|error| {
         findings.push(error.to_string());
-        Found::default()
+        FoundContact::default()
     });
     findings.extend(found.findings);
     let mut own: Vec<String> = Vec::new();
@@ -86,7 +86,7 @@ pub(super) fn row(fleet: &Listed, shelf: &Shelf, number: Number) -> Row {
         }
     }
     let values = found.values.into_iter().chain(measures.into_iter().flatten());
-    Row {
+    FleetRow {
         names: [wheelset.name.clone(), name(&wheels[0]), name(&wheels[1]), name(&rails[0]), name(&rails[1])],
         radii: [0, 1].map(|k| radius(fleet, shelf, number, k)),
         values: values.map(|value| value.filter(|value| value.is_finite())).collect(),
@@ -113,7 +113,7 @@ fn measured(
 }
 
 /// Returns the nominal rolling radius of a wheel \[mm\]: of the table, of the scene, or half the diameter that its file states.
-fn radius(fleet: &Listed, shelf: &Shelf, number: Number, side: usize) -> Option<f64> {
+fn radius(fleet: &Listed, shelf: &Shelf, number: PairNumber, side: usize) -> Option<f64> {
     let key = &keys(fleet, number)[1][side];
     let given = fleet.wheelsets[number.wheelset].radii[side];
     let stated = || shelf.get(key).ok()?.record.as_ref()?.diameter.map(|diameter| 0.5 * diameter);
@@ -124,7 +124,7 @@ fn radius(fleet: &Listed, shelf: &Shelf, number: Number, side: usize) -> Option<
 ///
 /// # Errors
 /// What is wrong with its profiles, or with their place on the track.
-pub(super) fn case(fleet: &Listed, shelf: &Shelf, number: Number) -> Result<Case> {
+pub(super) fn case(fleet: &Listed, shelf: &Shelf, number: PairNumber) -> Result<Case> {
     let [rails, wheels] = keys(fleet, number);
     let side = |k: usize| -> Result<SideProfiles> {
         let [rail, wheel] = [shelf.get(&rails[k])?, shelf.get(&wheels[k])?].map(Clone::clone);
@@ -143,14 +143,14 @@ pub(super) fn case(fleet: &Listed, shelf: &Shelf, number: Number) -> Result<Case
 }
 
 /// What was found of the contact of a pair.
-struct Found {
+struct FoundContact {
     /// Conicities and bands.
     values: Vec<Option<f64>>,
     findings: Vec<String>,
     touched: Vec<[i32; 2]>,
 }
 
-impl Default for Found {
+impl Default for FoundContact {
     fn default() -> Self {
         Self {
             values: vec![None; numbers().len() - 2 * MEASURES.len()],
@@ -160,7 +160,7 @@ impl Default for Found {
     }
 }
 
-impl Found {
+impl FoundContact {
     fn of(fleet: &Listed, case: &Case) -> Result<Self> {
         let (system, template) = wheelset(case)?;
         let mut findings = own_warnings(fleet, case);

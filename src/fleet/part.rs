@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::pair::Row;
+use super::pair::FleetRow;
 use crate::error::{Error, Result};
 use crate::files::read_bytes;
 
@@ -16,9 +16,9 @@ const NAME: &str = "part-";
 
 /// Rows, and where how many wheels touch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Part {
+pub(super) struct FleetPart {
     hash: String,
-    pub rows: Vec<Row>,
+    pub rows: Vec<FleetRow>,
     /// Displacement, cell and number of wheels.
     pub touched: Vec<(i32, i32, u32)>,
 }
@@ -33,9 +33,9 @@ pub(super) fn is_part(name: &str) -> bool {
     name.starts_with(NAME) && name.ends_with(".json")
 }
 
-impl Part {
+impl FleetPart {
     /// Takes the rows of a part and counts where its wheels touch.
-    pub fn new(hash: String, mut rows: Vec<Row>) -> Self {
+    pub fn new(hash: String, mut rows: Vec<FleetRow>) -> Self {
         let mut touched: BTreeMap<[i32; 2], u32> = BTreeMap::new();
         for row in &mut rows {
             for cell in std::mem::take(&mut row.touched) {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::list::{Source, Wheelset};
-use super::listed::{Listed, Number, Pairs};
+use super::list::{ListedWheelset, Source};
+use super::listed::{Listed, PairNumber, Pairs};
 use crate::error::{Error, Result};
 use crate::files::read_bytes;
 use crate::measure::{MeasureOptions, Measures, measure};
@@ -21,12 +21,12 @@ pub(super) struct Key {
     pub source: Source,
     pub wheel: bool,
     /// Whether the scene has options for the left side alone, the right side alone.
-    of: Of,
+    of: OptionsOf,
 }
 
 /// Whose options of the scene a profile has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum Of {
+enum OptionsOf {
     Both,
     Left,
     Right,
@@ -81,8 +81,8 @@ impl Shelf {
 }
 
 /// Returns the keys of the rails and the wheels of a pair, \[left, right\].
-pub(super) fn keys(fleet: &Listed, Number { wheelset, section }: Number) -> [[Key; 2]; 2] {
-    let Wheelset { wheels, rails, .. } = &fleet.wheelsets[wheelset];
+pub(super) fn keys(fleet: &Listed, PairNumber { wheelset, section }: PairNumber) -> [[Key; 2]; 2] {
+    let ListedWheelset { wheels, rails, .. } = &fleet.wheelsets[wheelset];
     let section = fleet.sections[section].as_ref();
     let rail = |k: usize| section.or(rails.as_ref().map(|own| &own[k])).unwrap_or(&Source::Scene);
     let key = |k: usize, wheel: bool| {
@@ -90,9 +90,9 @@ pub(super) fn keys(fleet: &Listed, Number { wheelset, section }: Number) -> [[Ke
         let own =
             side.as_ref().is_some_and(|side| if wheel { side.wheel.is_some() } else { side.rail.is_some() });
         let of = match (own, k) {
-            (false, _) => Of::Both,
-            (true, 0) => Of::Left,
-            (true, _) => Of::Right,
+            (false, _) => OptionsOf::Both,
+            (true, 0) => OptionsOf::Left,
+            (true, _) => OptionsOf::Right,
         };
         Key { source: if wheel { wheels[k].clone() } else { rail(k).clone() }, wheel, of }
     };
@@ -102,9 +102,9 @@ pub(super) fn keys(fleet: &Listed, Number { wheelset, section }: Number) -> [[Ke
 /// Returns what the scene says of a profile.
 pub(super) fn data<'a>(fleet: &'a Listed, key: &Key) -> &'a ProfileData {
     let side = match key.of {
-        Of::Both => None,
-        Of::Left => fleet.scene.left.as_ref(),
-        Of::Right => fleet.scene.right.as_ref(),
+        OptionsOf::Both => None,
+        OptionsOf::Left => fleet.scene.left.as_ref(),
+        OptionsOf::Right => fleet.scene.right.as_ref(),
     };
     let own = side.and_then(|side| if key.wheel { side.wheel.as_ref() } else { side.rail.as_ref() });
     own.unwrap_or(if key.wheel { &fleet.scene.wheel } else { &fleet.scene.rail })
@@ -148,7 +148,7 @@ pub(super) fn hash(fleet: &Listed, pairs: &Pairs) -> String {
     add(scene::echo(&fleet.scene, "").hash.as_bytes());
     let mut files: HashMap<PathBuf, Vec<u8>> = HashMap::new();
     for number in pairs.all() {
-        let Wheelset { name, radii, .. } = &fleet.wheelsets[number.wheelset];
+        let ListedWheelset { name, radii, .. } = &fleet.wheelsets[number.wheelset];
         add(name.as_bytes());
         radii.iter().for_each(|radius| add(&radius.unwrap_or(f64::NAN).to_le_bytes()));
         for key in keys(fleet, number).iter().flatten() {

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::listed::Number;
-use super::pair::{CELL, POSITIONS, Row, STEP, numbers};
-use super::part::Part;
+use super::listed::PairNumber;
+use super::pair::{CELL, FleetRow, POSITIONS, STEP, numbers};
+use super::part::FleetPart;
 use crate::export::{FleetDistribution, FleetHeat};
 
 /// Pairs that have pages of their own.
@@ -96,14 +96,14 @@ struct Distribution {
 /// A pair among the worst.
 #[derive(Debug, Clone)]
 pub(super) struct WorstPair {
-    pub number: Number,
-    pub row: Row,
+    pub number: PairNumber,
+    pub row: FleetRow,
     pub conicity: f64,
 }
 
 /// What is counted. Its size does not depend on the number of pairs.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Tally {
+pub(super) struct FleetTally {
     pub pairs: usize,
     pub with_conicity: usize,
     pub with_finding: usize,
@@ -116,9 +116,9 @@ pub(super) struct Tally {
     pub findings: Vec<[String; 3]>,
 }
 
-impl Tally {
+impl FleetTally {
     /// Counts a part, whose pairs have these numbers.
-    pub fn add(&mut self, part: &Part, pairs: impl Iterator<Item = Number>) {
+    pub fn add(&mut self, part: &FleetPart, pairs: impl Iterator<Item = PairNumber>) {
         let names = numbers();
         let column = |name: &str| names.iter().position(|own| own == name);
         let columns =
@@ -198,7 +198,7 @@ impl Tally {
 }
 
 /// Names the rails of a row: one name, where both are the same.
-pub(super) fn rails(row: &Row) -> String {
+pub(super) fn rails(row: &FleetRow) -> String {
     let [.., left, right] = &row.names;
     if left == right { left.clone() } else { format!("{left}, {right}") }
 }

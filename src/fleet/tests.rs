@@ -1,12 +1,12 @@
 //! How fleets are divided, and where what is read comes from.
 
-use super::list::{Source, Wheelset};
+use super::list::{ListedWheelset, Source};
 use super::profiles::{data, keys};
 use super::*;
 
 fn fleet(wheelsets: usize, sections: usize) -> Fleet {
     let source = |k: usize| Source::File(format!("{k}").into());
-    let wheelset = |k: usize| Wheelset {
+    let wheelset = |k: usize| ListedWheelset {
         name: k.to_string(),
         wheels: [source(k), source(k)],
         radii: [None; 2],
@@ -43,7 +43,7 @@ fn parts_hold_every_pair_once_and_are_of_bounded_size() {
 #[test]
 fn a_side_with_options_of_its_own_has_profiles_of_its_own() {
     let fleet = fleet(1, 1);
-    let [rails, wheels] = keys(&fleet.listed, Number { wheelset: 0, section: 0 });
+    let [rails, wheels] = keys(&fleet.listed, PairNumber { wheelset: 0, section: 0 });
     assert!(rails[0] == rails[1] && wheels[0] != wheels[1] && wheels[0].source == wheels[1].source);
     assert_eq!([0, 1].map(|k| data(&fleet.listed, &wheels[k]).mirror), [Some(true), None]);
 }

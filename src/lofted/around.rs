@@ -7,11 +7,11 @@ use std::cmp::Ordering::Less;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::build::{Loft, Slice};
+use super::build::{Loft, LoftSlice};
 use super::joining::Joining;
-use super::kept::{Curve, Form, Stretch};
+use super::kept::{HeightForm, HeightStretch, SmoothCurve};
 use super::section::section;
-use super::strip::Strip;
+use super::strip::LoftStrip;
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
 use crate::numerics::slopes;
@@ -66,14 +66,14 @@ impl LoftedWheel {
     /// # Errors
     /// The errors of [`Loft::new`]; angles that do not ascend; a radius that is not positive; a section that reaches the axle; sections
     /// that go more than once around. A last section at the place of the first one is left out, with a warning.
-    pub fn new(sections: &[Slice], radius: f64, joining: Joining) -> Result<Self> {
+    pub fn new(sections: &[LoftSlice], radius: f64, joining: Joining) -> Result<Self> {
         check_radius(radius)?;
         if let Some(pair) = sections.windows(2).find(|pair| pair[0].at.partial_cmp(&pair[1].at) != Some(Less))
         {
             let found = format!("a section at {} rad after one at {} rad", pair[1].at, pair[0].at);
             return Err(Error::new(&pair[1].name, found, "ascending angles", "sort the sections"));
         }
-        let mut own: Vec<Slice> = sections.to_vec();
+        let mut own: Vec<LoftSlice> = sections.to_vec();
         let mut warnings = Vec::new();
         if let [first, .., last] = sections {
             let over = last.at - first.at - 2.0 * PI;
@@ -124,10 +124,11 @@ impl LoftedWheel {
         Self::kept(profile, radius, middle, &FlatShape::new(radius, flat)?.stretches(middle))
     }
 
-    fn kept(profile: &Profile, radius: f64, middle: f64, stretches: &[Stretch]) -> Result<Self> {
-        let curves = Curve::parts(&profile.upside_down());
-        let beside =
-            |stretch| curves.iter().enumerate().map(move |(part, curve)| Strip::kept(part, curve, stretch));
+    fn kept(profile: &Profile, radius: f64, middle: f64, stretches: &[HeightStretch]) -> Result<Self> {
+        let curves = SmoothCurve::parts(&profile.upside_down());
+        let beside = |stretch| {
+            curves.iter().enumerate().map(move |(part, curve)| LoftStrip::kept(part, curve, stretch))
+        };
         let reach = Interval::of(middle).grown(FAR).map(|angle| radius * angle);
         let loft = Loft::of_strips(stretches.iter().flat_map(beside).collect(), reach);
         Self::around(loft, radius, middle, Vec::new())
@@ -135,7 +136,7 @@ impl LoftedWheel {
 
     /// Takes a surface if it stays clear of the axle.
     fn around(loft: Loft, radius: f64, middle: f64, warnings: Vec<String>) -> Result<Self> {
-        let heights = loft.strips.iter().flat_map(Strip::bays).map(|bay| bay.bounds(1)[1].low);
+        let heights = loft.strips.iter().flat_map(LoftStrip::bays).map(|bay| bay.bounds(1)[1].low);
         let nearest = heights.fold(f64::INFINITY, f64::min);
         if nearest + radius <= 0.0 {
             let found = format!("a surface up to z = {} mm", -nearest);
@@ -221,14 +222,14 @@ pub(crate) fn turned(angle: f64, middle: f64) -> f64 {
 }
 
 /// The sections from [`FAR`] before `middle` to as much after it, and beyond that as many as their joining depends on.
-fn periodic(own: &[Slice], middle: f64, joining: Joining) -> Vec<Slice> {
+fn periodic(own: &[LoftSlice], middle: f64, joining: Joining) -> Vec<LoftSlice> {
     let margin = match joining {
         Joining::Monotone => MARGIN,
         Joining::Cubic => SPLINE_MARGIN,
     };
     let turns = turns(own.len(), margin);
-    let all: Vec<Slice> = turns
-        .flat_map(|turn| own.iter().map(move |slice| Slice { at: slice.at + turn, ..slice.clone() }))
+    let all: Vec<LoftSlice> = turns
+        .flat_map(|turn| own.iter().map(move |slice| LoftSlice { at: slice.at + turn, ..slice.clone() }))
         .collect();
     let first = all.partition_point(|slice| slice.at <= middle - FAR).saturating_sub(1 + margin);
     let last = all.partition_point(|slice| slice.at < middle + FAR) + 1 + margin;
@@ -242,13 +243,14 @@ fn turns(rows: usize, margin: usize) -> impl Iterator<Item = f64> {
 }
 
 /// Develops sections at angles \[rad\] on the circumference, upside down.
-fn developed(sections: Vec<Slice>, radius: f64) -> Vec<Slice> {
-    let place = |slice: Slice| Slice { at: radius * slice.at, profile: slice.profile.upside_down(), ..slice };
+fn developed(sections: Vec<LoftSlice>, radius: f64) -> Vec<LoftSlice> {
+    let place =
+        |slice: LoftSlice| LoftSlice { at: radius * slice.at, profile: slice.profile.upside_down(), ..slice };
     sections.into_iter().map(place).collect()
 }
 
 /// The periodic spline through deviations \[mm\] at angles \[rad\], over the developed circumference.
-fn periodic_spline(deviations: &[[f64; 2]], radius: f64, middle: f64) -> Stretch {
+fn periodic_spline(deviations: &[[f64; 2]], radius: f64, middle: f64) -> HeightStretch {
     let all = turns(deviations.len(), SPLINE_MARGIN)
         .flat_map(|turn| deviations.iter().map(move |[angle, value]| [radius * (angle + turn), *value]));
     let (at, values): (Vec<f64>, Vec<f64>) = all.map(|[at, value]| (at, value)).unzip();
@@ -256,7 +258,7 @@ fn periodic_spline(deviations: &[[f64; 2]], radius: f64, middle: f64) -> Stretch
         values.iter().zip(slopes::spline(&at, &values)).map(|(value, slope)| [*value, slope]).collect();
     let first = at.partition_point(|at| *at <= radius * (middle - FAR)).saturating_sub(1);
     let last = (at.partition_point(|at| *at < radius * (middle + FAR)) + 1).min(at.len());
-    Stretch::of_cubics(at[first..last].to_vec(), rows[first..last].to_vec())
+    HeightStretch::of_cubics(at[first..last].to_vec(), rows[first..last].to_vec())
 }
 
 /// The radius along a flat, with its edges.
@@ -303,20 +305,24 @@ impl FlatShape {
     }
 
     /// The stretches of the circumference, in order, for a flat whose middle lies at an angle \[rad\].
-    fn stretches(&self, middle: f64) -> Vec<Stretch> {
+    fn stretches(&self, middle: f64) -> Vec<HeightStretch> {
         let Self { radius, edge_radius, chord: distance, ends: [chord, circle] } = *self;
         let place = |angle: f64| radius * (middle + angle);
-        let round = |from: f64, to: f64| Stretch::of_cubics(vec![place(from), place(to)], vec![[0.0; 2]; 2]);
+        let round =
+            |from: f64, to: f64| HeightStretch::of_cubics(vec![place(from), place(to)], vec![[0.0; 2]; 2]);
         let cells = |from: f64, to: f64, count: usize| -> Vec<f64> {
             let share = |k: usize| k as f64 / count as f64;
             (0..=count).map(|k| place(from * (1.0 - share(k)) + to * share(k))).collect()
         };
         let count = (2.0 * chord / OF_FLAT).ceil() as usize;
-        let flat = Stretch::of_form(Form::Chord { radius, distance, middle }, cells(-chord, chord, count));
+        let flat = HeightStretch::of_form(
+            HeightForm::Chord { radius, distance, middle },
+            cells(-chord, chord, count),
+        );
         let edge = |sign: f64, from: f64, to: f64| {
             let middle = middle + sign * circle;
-            let form = Form::Edge { radius, edge_radius, distance: radius - edge_radius, middle };
-            Stretch::of_form(form, cells(from, to, OF_EDGE))
+            let form = HeightForm::Edge { radius, edge_radius, distance: radius - edge_radius, middle };
+            HeightStretch::of_form(form, cells(from, to, OF_EDGE))
         };
         let mut stretches = vec![round(-FAR, -circle), flat, round(circle, FAR)];
         if circle > chord {

@@ -23,13 +23,13 @@ pub struct SurfacePoint {
 }
 
 /// Value, ∂/∂u, ∂/∂y and ∂²/∂u∂y of \[x, z\] at a corner of a cell.
-pub(super) type Corner = [[f64; 2]; 4];
+pub(super) type CornerValues = [[f64; 2]; 4];
 
 /// The bicubic of one cell: its four corners, and the interval of y that it covers \[mm\].
 #[derive(Debug, Clone, Copy)]
 pub struct Bicubic {
     /// Corners by u, then by y.
-    pub(super) corners: [[Corner; 2]; 2],
+    pub(super) corners: [[CornerValues; 2]; 2],
     /// Ends of the cell \[mm\].
     pub(super) y: Interval,
 }

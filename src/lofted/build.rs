@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::joining::Joining;
-use super::strip::{Bay, Strip};
+use super::strip::{Bay, LoftStrip};
 use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::numerics::interval::Interval;
 use crate::profile::{Mark, Profile, trace};
@@ -28,7 +28,7 @@ const JUMP_OF_ENDS: f64 = 0.1;
 
 /// One slice of a list.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Slice {
+pub struct LoftSlice {
     /// Position along the track \[mm\].
     pub at: f64,
     /// Its name in messages.
@@ -46,7 +46,7 @@ pub struct Slice {
 #[derive(Debug, Clone)]
 pub struct Loft {
     /// The parts of its surface.
-    pub strips: Vec<Strip>,
+    pub strips: Vec<LoftStrip>,
     /// Where the slices leave the surface undefined, and why.
     pub warnings: Vec<String>,
     reach: Interval,
@@ -66,7 +66,7 @@ impl Loft {
     /// # Errors
     /// Fewer than two slices; positions that do not ascend; different numbers of features, or features that do not ascend; no part
     /// that two successive slices have; a monotone surface that folds over between two slices; more points than memory should hold.
-    pub fn new(slices: &[Slice], joining: Joining) -> Result<Self> {
+    pub fn new(slices: &[LoftSlice], joining: Joining) -> Result<Self> {
         check(slices)?;
         let divided = in_order(slices.par_iter().map(divide))?;
         let (runs, mut warnings) = runs(slices, &divided);
@@ -74,7 +74,7 @@ impl Loft {
         for (part, run) in runs {
             let points = spread_all(&divided[run.clone()], part, &mut total)?;
             let at = slices[run.clone()].iter().map(|slice| slice.at).collect();
-            let strip = Strip::new(part, at, &points, joining);
+            let strip = LoftStrip::new(part, at, &points, joining);
             match fold(&strip, &slices[run]) {
                 Some(found) if joining == Joining::Monotone => {
                     let advice = "give features, or slices that show the same parts";
@@ -92,7 +92,7 @@ impl Loft {
     }
 
     /// Makes the surface of strips that cover a range of y \[mm\].
-    pub(super) fn of_strips(strips: Vec<Strip>, reach: Interval) -> Self {
+    pub(super) fn of_strips(strips: Vec<LoftStrip>, reach: Interval) -> Self {
         Self { strips, warnings: Vec::new(), reach }
     }
 
@@ -109,7 +109,7 @@ impl Loft {
     }
 }
 
-fn check(slices: &[Slice]) -> Result<()> {
+fn check(slices: &[LoftSlice]) -> Result<()> {
     if slices.len() < 2 {
         let found = format!("{} slice", slices.len());
         let advice = "list more, or give `along` for a section of it";
@@ -135,7 +135,7 @@ fn check(slices: &[Slice]) -> Result<()> {
 }
 
 /// Finds the parts of a slice on its curve.
-fn divide(slice: &Slice) -> Result<Divided> {
+fn divide(slice: &LoftSlice) -> Result<Divided> {
     let marks = trace(&slice.profile, MARKS);
     let length = marks.last().map_or(0.0, |mark| mark.s);
     if slice.features.len() < 2 {
@@ -162,7 +162,7 @@ fn divide(slice: &Slice) -> Result<Divided> {
 
 /// Finds the runs of successive slices that have a part, two at least, with its number. Where a list without features leaves the
 /// surface undefined a run ends, and a warning says why.
-fn runs(slices: &[Slice], divided: &[Divided]) -> (Vec<(usize, Range<usize>)>, Vec<String>) {
+fn runs(slices: &[LoftSlice], divided: &[Divided]) -> (Vec<(usize, Range<usize>)>, Vec<String>) {
     let (mut runs, mut warnings) = (Vec::new(), Vec::new());
     let parts = divided.first().map_or(0, |slice| slice.parts.len());
     for part in 0..parts {
@@ -187,7 +187,7 @@ fn runs(slices: &[Slice], divided: &[Divided]) -> (Vec<(usize, Range<usize>)>, V
 }
 
 /// Says how two slices without features differ too much to be joined; `None` for slices that may be.
-fn jump(slices: [&Slice; 2], divided: [&Divided; 2]) -> Option<String> {
+fn jump(slices: [&LoftSlice; 2], divided: [&Divided; 2]) -> Option<String> {
     let [a, b] = divided.map(|slice| slice.marks.as_slice());
     let ends = [a.first()?, a.last()?].into_iter().zip([b.first()?, b.last()?]);
     let moved =
@@ -235,7 +235,7 @@ fn spread(marks: &[Mark], span: Interval, cells: usize) -> Vec<[f64; 2]> {
 }
 
 /// Says where a section runs backward halfway between two slices that run alike; `None` if none does.
-fn fold(strip: &Strip, slices: &[Slice]) -> Option<String> {
+fn fold(strip: &LoftStrip, slices: &[LoftSlice]) -> Option<String> {
     let folds = |bay: Bay<'_>, cell: usize| {
         let (y, middle) = (bay.y(), bay.y().middle());
         let across = [y.low, middle, y.high].map(|y| bay.cell(cell).point(0.5, y).across);

@@ -10,9 +10,9 @@ use nalgebra::{Unit, Vector3};
 
 use super::around::LoftedWheel;
 use super::build::Loft;
-use super::runs::{LEVEL, Run, runs};
+use super::runs::{AscendingRun, LEVEL, runs};
 use super::space::{Laid, SpacePoint};
-use super::strip::Strip;
+use super::strip::LoftStrip;
 use crate::error::Result;
 use crate::numerics::interval::Interval;
 use crate::profile::{self, Profile, Section, Segment, Side};
@@ -63,7 +63,7 @@ pub struct FramedLoft {
     /// Coordinate of C along the surface \[mm\].
     along: f64,
     /// Sections at equal steps, made when they are asked for.
-    levels: Vec<OnceLock<Vec<Run>>>,
+    levels: Vec<OnceLock<Vec<AscendingRun>>>,
     /// Number of the first section, in steps from C.
     first: i64,
     /// Whether it is seen along a normal of the other body: feet are asked for at ξ = 0 alone.
@@ -245,7 +245,7 @@ impl FramedLoft {
     }
 
     /// The point (ξ, η, ζ) \[mm\] of a strip, and its derivatives with respect to u and y there.
-    pub fn seen_at(&self, strip: &Strip, u: f64, y: f64) -> [[f64; 3]; 3] {
+    pub fn seen_at(&self, strip: &LoftStrip, u: f64, y: f64) -> [[f64; 3]; 3] {
         let p = self.laid.point(strip.point(u, y));
         let [across, along] = self.tangents(&p);
         [self.seen(p.at), across, along]
@@ -298,7 +298,7 @@ impl FramedLoft {
     }
 
     /// The point of a strip in space.
-    fn point(&self, strip: &Strip, [u, y]: [f64; 2]) -> SpacePoint {
+    fn point(&self, strip: &LoftStrip, [u, y]: [f64; 2]) -> SpacePoint {
         self.laid.point(strip.point(u, y))
     }
 
@@ -377,11 +377,11 @@ impl FramedLoft {
     pub fn reach(&self, eta: Interval) -> Option<Interval> {
         let [from, to] = eta.ends().map(|eta| self.nearest_level(0.0, eta));
         let runs = (from..=to).flat_map(|level| self.level(level));
-        let reach = runs.map(Run::reach).fold(Interval::NONE, Interval::hull);
+        let reach = runs.map(AscendingRun::reach).fold(Interval::NONE, Interval::hull);
         (reach.has_width()).then_some(reach)
     }
 
-    fn level(&self, level: i64) -> &[Run] {
+    fn level(&self, level: i64) -> &[AscendingRun] {
         let Ok(index) = usize::try_from(level - self.first) else { return &[] };
         let (y, xi) = (self.along + LEVEL * level as f64, |at: [f64; 2], y: f64| self.seen_from(at, y)[0]);
         let made = || runs(&self.loft, xi, y, self.along_normal);
@@ -390,7 +390,7 @@ impl FramedLoft {
 }
 
 /// Whether a place lies on a strip.
-fn on(strip: &Strip, [u, y]: [f64; 2]) -> bool {
+fn on(strip: &LoftStrip, [u, y]: [f64; 2]) -> bool {
     Interval::new(0.0, strip.cells() as f64).grown(ROUNDING).contains(u)
         && strip.reach().grown(ROUNDING).contains(y)
 }

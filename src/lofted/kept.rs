@@ -23,9 +23,9 @@ const SURE: f64 = 2.0;
 
 /// A part of a profile without kinks, divided into cells.
 #[derive(Debug, Clone)]
-pub(super) struct Curve {
+pub(super) struct SmoothCurve {
     profile: Arc<Profile>,
-    cells: Vec<Cell>,
+    cells: Vec<CurveCell>,
     /// Bounds of x and z over the cells: see [`tree`].
     pub tree: Vec<[Interval; 2]>,
     /// How far the cells' cubics may be off \[mm\].
@@ -34,7 +34,7 @@ pub(super) struct Curve {
 
 /// A cell: a range of one segment's shares, with point and derivative at its ends.
 #[derive(Debug, Clone)]
-struct Cell {
+struct CurveCell {
     segment: usize,
     shares: Interval,
     /// Coefficients of x and z in powers of the share of the cell, on a polynomial; none on an arc or a line.
@@ -44,8 +44,8 @@ struct Cell {
 
 /// How the height varies over a stretch of y.
 #[derive(Debug, Clone)]
-pub(super) struct Stretch {
-    form: Form,
+pub(super) struct HeightStretch {
+    form: HeightForm,
     /// By how much more of it a point of the profile is moved, per mm of its own height \[1/mm\].
     growth: f64,
     /// Ends of its cells \[mm\].
@@ -58,7 +58,7 @@ pub(super) struct Stretch {
 
 /// The closed form of a height; angles are places along y over the radius.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Form {
+pub(super) enum HeightForm {
     /// Cubics between the rows.
     Cubics,
     /// A chord of a circle of this radius, at a distance from its centre \[mm\], and the angle of its middle.
@@ -67,7 +67,7 @@ pub(super) enum Form {
     Edge { radius: f64, edge_radius: f64, distance: f64, middle: f64 },
 }
 
-impl Curve {
+impl SmoothCurve {
     /// Divides a profile at its kinks and steps.
     pub fn parts(profile: &Profile) -> Vec<Arc<Self>> {
         let (marks, profile) = (trace(profile, CELL), Arc::new(profile.clone()));
@@ -97,7 +97,7 @@ impl Curve {
                     Shape::Polynomial(polynomial) => Some(polynomial.over(shares)),
                     Shape::Arc(_) => None,
                 };
-                let cell = Cell { segment, shares, powers, ends };
+                let cell = CurveCell { segment, shares, powers, ends };
                 for f in INSIDE {
                     let ([exact, ..], [near, ..]) = (cell.point(profile, f), cell.near(f));
                     off = off.max((exact[0] - near[0]).abs()).max((exact[1] - near[1]).abs());
@@ -141,7 +141,7 @@ fn value_and_derivatives(c: &[f64], f: f64) -> [f64; 3] {
     [value, rate, 2.0 * half]
 }
 
-impl Cell {
+impl CurveCell {
     /// Point and first two derivatives at a share.
     fn point(&self, profile: &Profile, f: f64) -> [[f64; 2]; 3] {
         if let Some(powers) = &self.powers {
@@ -160,10 +160,10 @@ impl Cell {
     }
 }
 
-impl Stretch {
+impl HeightStretch {
     /// Makes a stretch of a closed form of a circle's radius over cells that end at these places \[mm\]; all circles of the profile vary in
     /// proportion.
-    pub fn of_form(form: Form, at: Vec<f64>) -> Self {
+    pub fn of_form(form: HeightForm, at: Vec<f64>) -> Self {
         let rows = at.iter().map(|y| form.height(*y)).map(|[value, slope, _]| [value, slope]).collect();
         let mut stretch = Self { form, growth: form.growth(), at, rows, off: 0.0 };
         let errors = (1..stretch.at.len()).flat_map(|k| {
@@ -179,13 +179,13 @@ impl Stretch {
 
     /// Makes a stretch of cubics through heights \[mm\] with slopes, at ascending places \[mm\]; the whole profile moves alike.
     pub fn of_cubics(at: Vec<f64>, rows: Vec<[f64; 2]>) -> Self {
-        Self { form: Form::Cubics, growth: 0.0, at, rows, off: 0.0 }
+        Self { form: HeightForm::Cubics, growth: 0.0, at, rows, off: 0.0 }
     }
 
     /// Height, slope and second derivative in a cell at y \[mm\].
     fn height(&self, cell: usize, y: f64) -> [f64; 3] {
         match self.form {
-            Form::Cubics => self.near(cell, y),
+            HeightForm::Cubics => self.near(cell, y),
             form => form.height(y),
         }
     }
@@ -203,7 +203,7 @@ impl Stretch {
     }
 }
 
-impl Form {
+impl HeightForm {
     fn growth(&self) -> f64 {
         match self {
             Self::Cubics => 0.0,
@@ -236,12 +236,12 @@ impl Form {
 
 /// The surface of a curve over a stretch.
 #[derive(Debug, Clone)]
-pub(super) struct Kept {
-    pub curve: Arc<Curve>,
-    pub stretch: Stretch,
+pub(super) struct KeptSurface {
+    pub curve: Arc<SmoothCurve>,
+    pub stretch: HeightStretch,
 }
 
-impl Kept {
+impl KeptSurface {
     /// The point in a cell at a share of it across, and at y \[mm\] in a bay.
     pub fn point(&self, bay: usize, cell: usize, f: f64, y: f64) -> SurfacePoint {
         let [at, across, across2] = self.curve.cells[cell].point(&self.curve.profile, f);
@@ -261,7 +261,7 @@ impl Kept {
 
     /// The bicubic beside a cell.
     pub fn cell(&self, bay: usize, cell: usize) -> Bicubic {
-        let Stretch { at, rows, growth, .. } = &self.stretch;
+        let HeightStretch { at, rows, growth, .. } = &self.stretch;
         let ends = &self.curve.cells[cell].ends;
         let corner = |a: usize, b: usize| {
             let ([[x, z], [xu, zu]], [height, slope]) = (ends[a], rows[bay + b]);
@@ -293,8 +293,8 @@ mod tests {
     fn closed_forms_have_the_derivatives_of_their_differences() {
         let (radius, middle) = (460.0, 0.3);
         for form in [
-            Form::Chord { radius, distance: 459.0, middle },
-            Form::Edge { radius, edge_radius: 40.0, distance: 420.0, middle },
+            HeightForm::Chord { radius, distance: 459.0, middle },
+            HeightForm::Edge { radius, edge_radius: 40.0, distance: 420.0, middle },
         ] {
             for y in [130.0, 138.0, 144.0] {
                 let step = 1e-2;

@@ -35,13 +35,13 @@ mod tree;
 pub(crate) use around::turned;
 pub use around::{Flat, LoftedWheel};
 pub use bicubic::{Bicubic, SurfacePoint};
-pub use build::{Loft, SPACING, Slice};
+pub use build::{Loft, LoftSlice, SPACING};
 pub use framed::{Feet, FramedLoft, LoftFoot};
 pub use joining::Joining;
 pub use section::{joined, section};
 pub use space::{Laid, SpacePoint};
 pub(crate) use space::{directions, on_wheel};
-pub use strip::{Bay, Strip};
+pub use strip::{Bay, LoftStrip};
 
 /// The body of a pair that varies.
 #[derive(Debug, Clone)]

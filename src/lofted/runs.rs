@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::build::Loft;
-use super::strip::Strip;
+use super::strip::LoftStrip;
 use crate::numerics::interval::Interval;
 
 /// Distance along the surface of the sections from which feet are sought \[mm\].
@@ -14,7 +14,7 @@ const BESIDE: f64 = 2.0;
 
 /// Successive nodes of a strip in one section over which ξ ascends.
 #[derive(Debug, Clone)]
-pub(super) struct Run {
+pub(super) struct AscendingRun {
     pub strip: usize,
     first: usize,
     /// ξ of the nodes \[mm\].
@@ -23,8 +23,13 @@ pub(super) struct Run {
 
 /// Finds the runs in the section at y \[mm\]. `xi` gives ξ \[mm\] of a point \[x, z\] of a section at y. With `beside`, only cells near
 /// ξ = 0 are looked at, from which all feet at ξ = 0 can be found.
-pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, beside: bool) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+pub(super) fn runs(
+    loft: &Loft,
+    xi: impl Fn([f64; 2], f64) -> f64,
+    y: f64,
+    beside: bool,
+) -> Vec<AscendingRun> {
+    let mut runs: Vec<AscendingRun> = Vec::new();
     for (strip, own) in loft.strips.iter().enumerate() {
         let [from, to] = own.reach().ends();
         // A part that begins within a step is there for the feet that it leads to.
@@ -40,7 +45,7 @@ pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, besid
                 let xi = xi(own.point(node as f64, y).at, y);
                 match runs.last_mut().filter(|_| open) {
                     Some(run) if run.xi[run.xi.len() - 1] < xi => run.xi.push(xi),
-                    _ => runs.push(Run { strip, first: node, xi: vec![xi] }),
+                    _ => runs.push(AscendingRun { strip, first: node, xi: vec![xi] }),
                 }
                 open = true;
             }
@@ -51,7 +56,7 @@ pub(super) fn runs(loft: &Loft, xi: impl Fn([f64; 2], f64) -> f64, y: f64, besid
 }
 
 /// Lists the cells of a strip at y \[mm\] that may lie in a run from which feet at ξ = 0 are sought, as stretches in order.
-fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64) -> Vec<Range<usize>> {
+fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &LoftStrip, y: f64) -> Vec<Range<usize>> {
     let (bay, near) = (strip.bay_at(y), Interval::symmetric(2.0 * BESIDE + strip.off()));
     let (mut found, mut waiting): (Vec<Range<usize>>, _) = (Vec::new(), vec![1]);
     while let Some(node) = waiting.pop() {
@@ -72,7 +77,7 @@ fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &Strip, y: f64) -> Vec
     found
 }
 
-impl Run {
+impl AscendingRun {
     /// The ξ between its ends \[mm\].
     pub fn reach(&self) -> Interval {
         Interval::new(self.xi[0], self.xi[self.xi.len() - 1])

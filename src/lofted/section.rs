@@ -1,7 +1,7 @@
 //! The section of a lofted surface across the track.
 
 use super::build::Loft;
-use super::strip::Strip;
+use super::strip::LoftStrip;
 use crate::error::{Error, Result};
 use crate::profile::{Polynomial, Profile, Segment, Shape};
 
@@ -45,7 +45,7 @@ pub fn joined(loft: &Loft, strip: usize, y: f64) -> Vec<usize> {
 }
 
 /// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out.
-fn spans(strip: &Strip, y: f64) -> Vec<Result<Segment>> {
+fn spans(strip: &LoftStrip, y: f64) -> Vec<Result<Segment>> {
     let node = |k: usize| strip.point(k as f64, y);
     let mut from = node(0);
     let mut out = Vec::with_capacity(strip.cells());

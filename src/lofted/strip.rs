@@ -3,43 +3,43 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::bicubic::{Bicubic, Corner, SurfacePoint};
+use super::bicubic::{Bicubic, CornerValues, SurfacePoint};
 use super::joining::Joining;
-use super::kept::{Curve, Kept, Stretch};
+use super::kept::{HeightStretch, KeptSurface, SmoothCurve};
 use super::tree::tree;
 use crate::numerics::interval::Interval;
 
-/// A part of the surface without interruption: over u from 0 to [`Strip::cells`], and over y from its first slice to its last.
+/// A part of the surface without interruption: over u from 0 to [`LoftStrip::cells`], and over y from its first slice to its last.
 #[derive(Debug, Clone)]
-pub struct Strip {
+pub struct LoftStrip {
     /// Number of the part that it is of, from 0 at the side of the track's centre.
     pub part: usize,
     at: Vec<f64>,
     cells: usize,
-    surface: Surface,
+    surface: StripSurface,
 }
 
 /// What a strip's surface is made of.
 #[derive(Debug, Clone)]
-enum Surface {
+enum StripSurface {
     /// Slices: the corners of all cells, slice by slice, and bounds of x and z over the cells between two slices: see [`tree`].
-    Joined { corners: Vec<Corner>, trees: Vec<Vec<[Interval; 2]>> },
+    Joined { corners: Vec<CornerValues>, trees: Vec<Vec<[Interval; 2]>> },
     /// A profile that keeps its shape.
-    Kept(Kept),
+    Kept(KeptSurface),
 }
 
 /// The cells of a strip between two neighbouring slices.
 #[derive(Debug, Clone, Copy)]
 pub struct Bay<'a> {
-    strip: &'a Strip,
+    strip: &'a LoftStrip,
     index: usize,
 }
 
-impl Strip {
+impl LoftStrip {
     /// Joins the points \[x, z\] of two slices or more, the same number at ascending places `at` \[mm\].
     pub(super) fn new(part: usize, at: Vec<f64>, points: &[Vec<[f64; 2]>], joining: Joining) -> Self {
         let nodes = points[0].len();
-        let mut corners: Vec<Corner> =
+        let mut corners: Vec<CornerValues> =
             points.iter().flatten().map(|at| [*at, [0.0; 2], [0.0; 2], [0.0; 2]]).collect();
         for node in 0..nodes {
             for axis in 0..2 {
@@ -68,20 +68,20 @@ impl Strip {
             }))
         };
         let trees = (0..at.len() - 1).map(of_bay).collect();
-        Self { part, at, cells, surface: Surface::Joined { corners, trees } }
+        Self { part, at, cells, surface: StripSurface::Joined { corners, trees } }
     }
 
     /// Takes a profile's part that keeps its shape over a stretch.
-    pub(super) fn kept(part: usize, curve: &Arc<Curve>, stretch: &Stretch) -> Self {
-        let kept = Kept { curve: Arc::clone(curve), stretch: stretch.clone() };
-        Self { part, at: stretch.at.clone(), cells: curve.cells(), surface: Surface::Kept(kept) }
+    pub(super) fn kept(part: usize, curve: &Arc<SmoothCurve>, stretch: &HeightStretch) -> Self {
+        let kept = KeptSurface { curve: Arc::clone(curve), stretch: stretch.clone() };
+        Self { part, at: stretch.at.clone(), cells: curve.cells(), surface: StripSurface::Kept(kept) }
     }
 
     /// How far its surface may be off the cells' bicubics \[mm\].
     pub fn off(&self) -> f64 {
         match &self.surface {
-            Surface::Joined { .. } => 0.0,
-            Surface::Kept(kept) => kept.off(),
+            StripSurface::Joined { .. } => 0.0,
+            StripSurface::Kept(kept) => kept.off(),
         }
     }
 
@@ -123,10 +123,10 @@ impl Strip {
         let cell = (u.max(0.0) as usize).min(self.cells - 1);
         let (bay, f) = (self.bay_at(y), u - cell as f64);
         match &self.surface {
-            Surface::Joined { corners, .. } => {
+            StripSurface::Joined { corners, .. } => {
                 joined(corners, self.cells, &self.at, [bay.index, cell]).point(f, y)
             }
-            Surface::Kept(kept) => kept.point(bay.index, cell, f, y),
+            StripSurface::Kept(kept) => kept.point(bay.index, cell, f, y),
         }
     }
 }
@@ -142,20 +142,20 @@ impl<'a> Bay<'a> {
         Interval::new(self.strip.at[self.index], self.strip.at[self.index + 1])
     }
 
-    /// The bicubic of one of its cells, or beside it: see [`Strip::off`].
+    /// The bicubic of one of its cells, or beside it: see [`LoftStrip::off`].
     pub fn cell(&self, cell: usize) -> Bicubic {
-        let Strip { at, cells, surface, .. } = self.strip;
+        let LoftStrip { at, cells, surface, .. } = self.strip;
         match surface {
-            Surface::Joined { corners, .. } => joined(corners, *cells, at, [self.index, cell]),
-            Surface::Kept(kept) => kept.cell(self.index, cell),
+            StripSurface::Joined { corners, .. } => joined(corners, *cells, at, [self.index, cell]),
+            StripSurface::Kept(kept) => kept.cell(self.index, cell),
         }
     }
 
     /// Bounds of x and z \[mm\] over a node of its tree, whose root is 1: of the bicubics.
     pub fn bounds(&self, node: usize) -> [Interval; 2] {
         match &self.strip.surface {
-            Surface::Joined { trees, .. } => trees[self.index][node],
-            Surface::Kept(kept) => kept.bounds(self.index, node),
+            StripSurface::Joined { trees, .. } => trees[self.index][node],
+            StripSurface::Kept(kept) => kept.bounds(self.index, node),
         }
     }
 
@@ -179,7 +179,7 @@ impl<'a> Bay<'a> {
 
 /// The bicubic of a cell of a bay.
 #[inline(always)]
-fn joined(corners: &[Corner], cells: usize, at: &[f64], [bay, cell]: [usize; 2]) -> Bicubic {
+fn joined(corners: &[CornerValues], cells: usize, at: &[f64], [bay, cell]: [usize; 2]) -> Bicubic {
     let corner = |a: usize, b: usize| corners[(bay + b) * (cells + 1) + cell + a];
     let corners = [0, 1].map(|a| [0, 1].map(|b| corner(a, b)));
     Bicubic { corners, y: Interval::new(at[bay], at[bay + 1]) }

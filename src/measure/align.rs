@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::curve::Curve;
-use super::fit::{Fit, Fitted};
+use super::curve::MarkedCurve;
+use super::fit::{FittedMotion, NominalFit};
 use super::nominal::{Back, Nominal, back_of, is_from_back, own_back, sized};
 use super::options::{Align, MeasureOptions};
 use crate::numerics::interval::Interval;
@@ -44,7 +44,7 @@ pub struct Alignment {
 
 /// A measured curve in the axes in which it is measured.
 pub(super) struct Aligned {
-    pub curve: Curve,
+    pub curve: MarkedCurve,
     /// x of the flange back, from which X counts \[mm\]; 0 for rails.
     pub back: f64,
     /// Why the back lies there only if the file's x = 0 is the taping line.
@@ -95,7 +95,7 @@ pub(super) fn align(
 }
 
 /// Aligns a wheel without its back whose flange's tip shows that x = 0 is the taping line.
-fn from_taping_line(curve: &Curve, why: String, options: &MeasureOptions) -> Result<Aligned, String> {
+fn from_taping_line(curve: &MarkedCurve, why: String, options: &MeasureOptions) -> Result<Aligned, String> {
     let back = -options.tread_at;
     if !curve.highest(-1.0).is_some_and(|tip| is_from_back(tip.x - back)) {
         return Err(why);
@@ -106,7 +106,7 @@ fn from_taping_line(curve: &Curve, why: String, options: &MeasureOptions) -> Res
 
 fn with_nominal(
     profile: &Profile,
-    curve: &Curve,
+    curve: &MarkedCurve,
     side: Side,
     nominal: &Nominal,
     align: Align,
@@ -136,7 +136,7 @@ fn with_nominal(
 }
 
 /// Moves a curve without turning it.
-fn moved(curve: &Curve, [x, z]: [f64; 2], back: f64, align: Align, text: &str) -> Aligned {
+fn moved(curve: &MarkedCurve, [x, z]: [f64; 2], back: f64, align: Align, text: &str) -> Aligned {
     let curve = curve.placed(&Station { x, z, ..Station::AXES });
     let alignment = Alignment { align, text: text.into(), residual: None, doubt: None };
     Aligned { curve, back, no_back: None, alignment }
@@ -144,13 +144,13 @@ fn moved(curve: &Curve, [x, z]: [f64; 2], back: f64, align: Align, text: &str) -
 
 fn fitted(
     profile: &Profile,
-    curve: &Curve,
+    curve: &MarkedCurve,
     side: Side,
     nominal: &Nominal,
     align: Align,
     options: &MeasureOptions,
 ) -> Result<Aligned, String> {
-    let coarse = |profile: &Profile| Curve { marks: trace(profile, STEP) };
+    let coarse = |profile: &Profile| MarkedCurve { marks: trace(profile, STEP) };
     let (measured, onto) = (coarse(profile), coarse(nominal.profile));
     let work = measured.marks.len().saturating_mul(onto.marks.len());
     if work > MOST_WORK {
@@ -159,8 +159,8 @@ fn fitted(
         ));
     }
     let (parts, what) = parts(&onto, side, align, options);
-    let fit = Fit { measured: &measured, nominal: &onto, parts: &parts };
-    let all: Vec<Result<Fitted, String>> =
+    let fit = NominalFit { measured: &measured, nominal: &onto, parts: &parts };
+    let all: Vec<Result<FittedMotion, String>> =
         starts(&measured, &onto, side).into_iter().map(|start| fit.of_parts(start)).collect();
     let best = all.iter().flatten().min_by(|a, b| a.rms.total_cmp(&b.rms)).copied();
     let none = || all.iter().find_map(|found| found.as_ref().err().cloned()).unwrap_or_default();
@@ -171,7 +171,7 @@ fn fitted(
     } else {
         (of_parts, what)
     };
-    let Fitted { motion, rms, length } = found;
+    let FittedMotion { motion, rms, length } = found;
     let turn = motion.angle().to_degrees();
     let off = (of_parts.rms > LARGEST_RESIDUAL).then(|| {
         format!("alignment by parts that are off the nominal by {:.3} mm, more than {LARGEST_RESIDUAL}: worn, or another nominal", of_parts.rms)
@@ -191,9 +191,9 @@ fn fitted(
 }
 
 /// Returns first guesses of the motion: back and tip of a flange, field side and top of a rail are brought to each other.
-fn starts(measured: &Curve, nominal: &Curve, side: Side) -> Vec<Station> {
+fn starts(measured: &MarkedCurve, nominal: &MarkedCurve, side: Side) -> Vec<Station> {
     let sign = if side == Side::Rail { 1.0 } else { -1.0 };
-    let ends = |curve: &Curve| {
+    let ends = |curve: &MarkedCurve| {
         let x = curve.extent();
         let outer = if side == Side::Rail { x.high } else { x.low };
         let best = curve.highest(sign);
@@ -210,7 +210,7 @@ fn starts(measured: &Curve, nominal: &Curve, side: Side) -> Vec<Station> {
 }
 
 /// Returns which marks of the nominal are fitted, and their name.
-fn parts(nominal: &Curve, side: Side, align: Align, options: &MeasureOptions) -> (Vec<bool>, String) {
+fn parts(nominal: &MarkedCurve, side: Side, align: Align, options: &MeasureOptions) -> (Vec<bool>, String) {
     let marks = &nominal.marks;
     let stations = || marks.iter().map(|mark| mark.station);
     let [first, last] = nominal.extent().ends();

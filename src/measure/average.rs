@@ -1,7 +1,7 @@
 //! The average of profiles: a representative one of a segment, with its spread.
 
 use super::align::{self, Aligned};
-use super::curve::Curve;
+use super::curve::MarkedCurve;
 use super::nominal::Nominal;
 use super::options::MeasureOptions;
 use super::overlay::across;
@@ -110,7 +110,7 @@ pub fn average(
             "give others, or another alignment",
         ));
     }
-    let length = |curve: &Curve| curve.marks.last().map_or(0.0, |mark| mark.s);
+    let length = |curve: &MarkedCurve| curve.marks.last().map_or(0.0, |mark| mark.s);
     let longest = curves.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
     let first: Vec<Station> = longest.map_or_else(Vec::new, stations);
     // The first reference has its own noise; distances count along the normals of the average.
@@ -120,7 +120,7 @@ pub fn average(
 }
 
 /// Puts a wheel that has no nominal at X = 0.
-fn in_common_axes(aligned: Aligned, nominal: bool) -> Curve {
+fn in_common_axes(aligned: Aligned, nominal: bool) -> MarkedCurve {
     if nominal || aligned.back == 0.0 {
         return aligned.curve;
     }
@@ -128,7 +128,7 @@ fn in_common_axes(aligned: Aligned, nominal: bool) -> Curve {
 }
 
 /// Returns stations of a curve at even distances.
-fn stations(curve: &Curve) -> Vec<Station> {
+fn stations(curve: &MarkedCurve) -> Vec<Station> {
     let mut next = 0.0;
     let mut out = Vec::new();
     for mark in curve.marks.iter().filter(|mark| mark.station.sin.is_finite()) {
@@ -154,7 +154,7 @@ fn along(points: &[AveragePoint]) -> Vec<Station> {
 }
 
 /// Averages curves along the normals of stations, where at least half of them, and two, are.
-fn averaged(curves: &[Curve], stations: &[Station]) -> Vec<AveragePoint> {
+fn averaged(curves: &[MarkedCurve], stations: &[Station]) -> Vec<AveragePoint> {
     let least = curves.len().div_ceil(2).max(2);
     let mut out = Vec::new();
     for at in stations {

@@ -9,20 +9,20 @@ const STEP: f64 = 0.05;
 
 /// Marks from left to right.
 #[derive(Debug, Clone)]
-pub(super) struct Curve {
+pub(super) struct MarkedCurve {
     pub marks: Vec<Mark>,
 }
 
 /// A point on a curve \[mm\].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct CurvePoint {
     pub x: f64,
     pub z: f64,
     /// Index of the mark before it.
     pub mark: usize,
 }
 
-impl Curve {
+impl MarkedCurve {
     pub fn new(profile: &Profile) -> Self {
         Self { marks: trace(profile, STEP) }
     }
@@ -56,7 +56,7 @@ impl Curve {
     }
 
     /// Returns where a·x + b·z = `level`, from left to right along the curve.
-    pub fn crossings(&self, [a, b]: [f64; 2], level: f64) -> Vec<Place> {
+    pub fn crossings(&self, [a, b]: [f64; 2], level: f64) -> Vec<CurvePoint> {
         let over = |[x, z]: [f64; 2]| a * x + b * z - level;
         let mut found = Vec::new();
         for (mark, pair) in self.marks.windows(2).enumerate() {
@@ -66,27 +66,27 @@ impl Curve {
             }
             if let Some(share) = bracketed(|share| over(pair[0].between(&pair[1], share)), 0.0, 1.0) {
                 let [x, z] = pair[0].between(&pair[1], share);
-                found.push(Place { x, z, mark });
+                found.push(CurvePoint { x, z, mark });
             }
         }
         found
     }
 
     /// Returns where the curve has this x.
-    pub fn at_x(&self, x: f64) -> Vec<Place> {
+    pub fn at_x(&self, x: f64) -> Vec<CurvePoint> {
         self.crossings([1.0, 0.0], x)
     }
 
     /// Returns where the curve has this height.
-    pub fn at_z(&self, z: f64) -> Vec<Place> {
+    pub fn at_z(&self, z: f64) -> Vec<CurvePoint> {
         self.crossings([0.0, 1.0], z)
     }
 
     /// Returns the highest place, or for `sign` = −1 the lowest; `None` without marks.
-    pub fn highest(&self, sign: f64) -> Option<Place> {
+    pub fn highest(&self, sign: f64) -> Option<CurvePoint> {
         let height = |k: &usize| sign * self.marks[*k].station.z;
         let best = (0..self.marks.len()).max_by(|a, b| height(a).total_cmp(&height(b)))?;
-        let at = |mark: usize, [x, z]: [f64; 2]| Place { x, z, mark };
+        let at = |mark: usize, [x, z]: [f64; 2]| CurvePoint { x, z, mark };
         let own = &self.marks[best].station;
         let mut found = at(best, [own.x, own.z]);
         for k in best.saturating_sub(1)..=best {

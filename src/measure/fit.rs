@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::curve::Curve;
+use super::curve::MarkedCurve;
 use crate::numerics::interval::Interval;
 use crate::profile::{Mark, Station, beside};
 
@@ -28,16 +28,16 @@ const MOST_ROUNDS: usize = 50;
 const ROUND_SETTLED: f64 = 1e-4;
 
 /// A fit of a measured curve to a nominal one.
-pub(super) struct Fit<'a> {
-    pub measured: &'a Curve,
-    pub nominal: &'a Curve,
+pub(super) struct NominalFit<'a> {
+    pub measured: &'a MarkedCurve,
+    pub nominal: &'a MarkedCurve,
     /// Whether each mark of the nominal belongs to a part that is fitted.
     pub parts: &'a [bool],
 }
 
 /// A motion and how well it fits.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Fitted {
+pub(super) struct FittedMotion {
     pub motion: Station,
     /// Root mean square of the distances \[mm\].
     pub rms: f64,
@@ -46,7 +46,7 @@ pub(super) struct Fitted {
 }
 
 /// A place of the measured curve beside its foot on the nominal one.
-struct Pair {
+struct PointAndFoot {
     measured: usize,
     at: [f64; 2],
     normal: [f64; 2],
@@ -54,12 +54,12 @@ struct Pair {
     weight: f64,
 }
 
-impl Fit<'_> {
+impl NominalFit<'_> {
     /// Finds the motion that fits the parts, from a first guess.
     ///
     /// # Errors
     /// Parts that are not measured, that leave a motion free, or at which the fit does not settle; the text says which.
-    pub fn of_parts(&self, start: Station) -> Result<Fitted, String> {
+    pub fn of_parts(&self, start: Station) -> Result<FittedMotion, String> {
         let own: f64 =
             self.nominal.lengths().zip(self.parts).filter(|(_, part)| **part).map(|(l, _)| l).sum();
         let fitted = self.settled(start, |_, foot, across| self.parts[foot] && across.abs() <= FARTHEST)?;
@@ -72,8 +72,8 @@ impl Fit<'_> {
     /// Finds the motion that fits all places that fit, from the motion that fits the parts.
     ///
     /// # Errors
-    /// The errors of [`Fit::of_parts`].
-    pub fn of_all(&self, of_parts: Fitted) -> Result<Fitted, String> {
+    /// The errors of [`NominalFit::of_parts`].
+    pub fn of_all(&self, of_parts: FittedMotion) -> Result<FittedMotion, String> {
         let fits = (3.0 * of_parts.rms).clamp(FITS.low, FITS.high);
         let mut fitted = of_parts;
         for _ in 0..MOST_ROUNDS {
@@ -90,7 +90,11 @@ impl Fit<'_> {
         Err(format!("the places that fit are not settled after {MOST_ROUNDS} rounds"))
     }
 
-    fn settled(&self, start: Station, belongs: impl Fn(usize, usize, f64) -> bool) -> Result<Fitted, String> {
+    fn settled(
+        &self,
+        start: Station,
+        belongs: impl Fn(usize, usize, f64) -> bool,
+    ) -> Result<FittedMotion, String> {
         let (mut motion, mut feet) = (start, Vec::new());
         for _ in 0..MOST_PASSES {
             let pairs = self.pairs(&motion, &mut feet, &belongs);
@@ -104,7 +108,7 @@ impl Fit<'_> {
                 let pairs = self.pairs(&motion, &mut feet, &belongs);
                 let length: f64 = pairs.iter().map(|pair| pair.weight).sum();
                 let squares: f64 = pairs.iter().map(|pair| pair.weight * pair.across.powi(2)).sum();
-                return Ok(Fitted { motion, rms: (squares / length).sqrt(), length });
+                return Ok(FittedMotion { motion, rms: (squares / length).sqrt(), length });
             }
         }
         Err(format!("the fit is not settled after {MOST_PASSES} passes"))
@@ -116,7 +120,7 @@ impl Fit<'_> {
         motion: &Station,
         feet: &mut Vec<usize>,
         belongs: impl Fn(usize, usize, f64) -> bool,
-    ) -> Vec<Pair> {
+    ) -> Vec<PointAndFoot> {
         let nominal = &self.nominal.marks;
         let moved = self.measured.placed(motion);
         if feet.is_empty() {
@@ -132,7 +136,7 @@ impl Fit<'_> {
             let inside = foot.mark > 0 && foot.mark + 1 < nominal.len();
             if inside && along >= ALONG && belongs(k, foot.mark, foot.across) {
                 let at = [station.x, station.z];
-                pairs.push(Pair {
+                pairs.push(PointAndFoot {
                     measured: k,
                     at,
                     normal: [-own.sin, own.cos],
@@ -146,12 +150,12 @@ impl Fit<'_> {
 }
 
 /// Returns the motion that makes the distances least to first order; `None` if some motion changes none of them.
-fn step(pairs: &[Pair]) -> Option<Station> {
+fn step(pairs: &[PointAndFoot]) -> Option<Station> {
     let length: f64 = pairs.iter().map(|pair| pair.weight).sum();
     let mean = |k: usize| pairs.iter().map(|pair| pair.weight * pair.at[k]).sum::<f64>() / length;
     let centre = [mean(0), mean(1)];
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    for Pair { at, normal: [a, b], across, weight, .. } in pairs {
+    for PointAndFoot { at, normal: [a, b], across, weight, .. } in pairs {
         let turn = b * (at[0] - centre[0]) - a * (at[1] - centre[1]);
         let row = Vector3::new(*a, *b, turn / ARM);
         normal += *weight * row * row.transpose();

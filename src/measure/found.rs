@@ -4,13 +4,13 @@ use super::quantity::Quantity;
 
 /// Values in the order of [`Quantity::ALL`], and why others cannot be had.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
+pub(super) struct FoundValues {
     values: [Option<f64>; Quantity::ALL.len()],
     /// Why, and which quantities.
     missing: Vec<(String, Vec<Quantity>)>,
 }
 
-impl Found {
+impl FoundValues {
     pub fn put(&mut self, quantity: Quantity, value: Result<f64, String>) {
         let why = match value {
             Ok(value) if value.is_finite() => {

@@ -1,7 +1,7 @@
 //! Measures one profile: aligned, as it is, and moved as far as an alignment may be off.
 
 use super::align::{Aligned, align};
-use super::found::Found;
+use super::found::FoundValues;
 use super::measures::Measures;
 use super::nominal::Nominal;
 use super::options::MeasureOptions;
@@ -55,7 +55,7 @@ pub fn measure(
 }
 
 /// An aligned profile with the nominal that it is aligned on, if there is one.
-pub(super) struct Laid<'a> {
+pub(super) struct AlignedProfile<'a> {
     pub aligned: Aligned,
     pub nominal: Option<&'a Nominal<'a>>,
     /// Why it lies in its own axes though there is a nominal.
@@ -68,20 +68,20 @@ pub(super) fn laid<'a>(
     side: Side,
     nominal: Option<&'a Nominal<'a>>,
     options: &MeasureOptions,
-) -> std::result::Result<Laid<'a>, String> {
+) -> std::result::Result<AlignedProfile<'a>, String> {
     match align(profile, side, nominal, options) {
-        Ok(aligned) => Ok(Laid { aligned, nominal, lost: None }),
+        Ok(aligned) => Ok(AlignedProfile { aligned, nominal, lost: None }),
         Err(why) => match nominal.and_then(|_| alone(profile, side, options)) {
             Some(aligned) => {
                 let lost = Some(format!("{why}: no wear, the rest in its own axes"));
-                Ok(Laid { aligned, nominal: None, lost })
+                Ok(AlignedProfile { aligned, nominal: None, lost })
             }
             None => Err(why),
         },
     }
 }
 
-impl Laid<'_> {
+impl AlignedProfile<'_> {
     fn measures(self, side: Side, options: &MeasureOptions) -> Measures {
         let Self { aligned, nominal, lost } = self;
         let found = at(&aligned, side, nominal, options, &Station::AXES);
@@ -118,7 +118,7 @@ pub(super) fn at(
     nominal: Option<&Nominal>,
     options: &MeasureOptions,
     motion: &Station,
-) -> Found {
+) -> FoundValues {
     let curve = aligned.curve.placed(motion);
     match side {
         Side::Wheel => {
@@ -134,7 +134,7 @@ fn if_off(
     side: Side,
     nominal: Option<&Nominal>,
     options: &MeasureOptions,
-    found: &Found,
+    found: &FoundValues,
 ) -> [Option<f64>; Quantity::ALL.len()] {
     let values = found.values();
     let mut most = values.map(|value| value.map(|_| 0.0f64));

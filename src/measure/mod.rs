@@ -35,4 +35,4 @@ pub use quantity::Quantity;
 pub use repeats::repeated;
 #[cfg(feature = "files")]
 pub(crate) use rows::in_micrometres;
-pub use rows::{Row, RowColumns, csv, json, table};
+pub use rows::{MeasureRow, RowColumns, csv, json, table};

@@ -1,6 +1,6 @@
 //! What profiles are put on: the flange back from which X counts, the running head, and the nominal profile with both.
 
-use super::curve::Curve;
+use super::curve::MarkedCurve;
 use crate::error::{self, Error};
 use crate::numerics::interval::Interval;
 use crate::profile::{Profile, Side, Station, last_groove};
@@ -33,7 +33,7 @@ pub(super) struct Back {
 /// A nominal profile with its axes.
 pub(super) struct Nominal<'a> {
     pub profile: &'a Profile,
-    pub curve: Curve,
+    pub curve: MarkedCurve,
     /// x of its flange back \[mm\]; 0 for rails.
     pub back: f64,
 }
@@ -55,19 +55,19 @@ impl<'a> Nominal<'a> {
 }
 
 /// Returns the curve of a profile that is as large as wheels and rails are.
-pub(super) fn sized(profile: &Profile) -> Result<Curve, String> {
+pub(super) fn sized(profile: &Profile) -> Result<MarkedCurve, String> {
     let extent = profile.extent();
     if extent > LARGEST {
         return Err(format!(
             "the profile is {extent:.0} mm large, and wheels and rails are at most {LARGEST}: check its unit"
         ));
     }
-    Ok(Curve::new(profile))
+    Ok(MarkedCurve::new(profile))
 }
 
 /// Returns x of the flange back in the axes of a file or a drawing: 0 if the flange's tip shows that it is there, otherwise the back
 /// itself; and how it was found.
-pub(super) fn own_back(curve: &Curve) -> Result<Back, String> {
+pub(super) fn own_back(curve: &MarkedCurve) -> Result<Back, String> {
     let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
     if is_from_back(tip) {
         return Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None });
@@ -82,7 +82,7 @@ pub(super) fn is_from_back(tip: f64) -> bool {
 
 /// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost
 /// point, if the profile is upright there.
-pub(super) fn back_of(curve: &Curve) -> Result<Back, String> {
+pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
     let none = |why: String| format!("no flange back: {why}");
     let tip = curve.highest(-1.0).ok_or_else(|| none("no points".into()))?;
     let back = curve.up_to(tip.mark);
@@ -116,7 +116,7 @@ pub(super) fn back_of(curve: &Curve) -> Result<Back, String> {
 }
 
 /// Returns the running head of a rail: what is right of its last groove.
-pub(super) fn running_head(curve: &Curve) -> (Curve, Option<usize>) {
+pub(super) fn running_head(curve: &MarkedCurve) -> (MarkedCurve, Option<usize>) {
     let heights: Vec<f64> = curve.marks.iter().map(|mark| mark.station.z).collect();
     let groove = last_groove(&heights);
     (curve.from(groove.unwrap_or(0)), groove)

@@ -1,7 +1,7 @@
 //! A measured profile over its nominal one, with their differences.
 
 use super::align::{self, Alignment};
-use super::curve::Curve;
+use super::curve::MarkedCurve;
 use super::nominal::Nominal;
 use super::options::MeasureOptions;
 use crate::error::{Error, Result};
@@ -42,7 +42,7 @@ pub fn overlay(
     let error = |why: String| Error::new(&profile.name, why, "a profile that can be aligned", advice);
     let nominal = Nominal::named(nominal, side)?;
     let aligned = align::align(profile, side, Some(&nominal), options).map_err(error)?;
-    let points = |curve: &Curve| {
+    let points = |curve: &MarkedCurve| {
         let last = curve.marks.len().saturating_sub(1);
         let drawn = curve.marks.iter().enumerate().filter(|(k, _)| k % DRAWN == 0 || *k == last);
         drawn.map(|(_, mark)| [mark.station.x, mark.station.z]).collect()
@@ -65,7 +65,7 @@ pub fn overlay(
 }
 
 /// Returns the point of a curve that is the nearest on the normal of a station.
-pub(super) fn across(curve: &Curve, at: &Station) -> Option<[f64; 2]> {
+pub(super) fn across(curve: &MarkedCurve, at: &Station) -> Option<[f64; 2]> {
     let all = curve.crossings([at.cos, at.sin], at.cos * at.x + at.sin * at.z).into_iter();
     let distance = |point: &[f64; 2]| (point[0] - at.x).hypot(point[1] - at.z);
     let near = all.map(|place| [place.x, place.z]).filter(|point| distance(point) <= FARTHEST);

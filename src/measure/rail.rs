@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::curve::{Curve, Place};
-use super::found::Found;
+use super::curve::{CurvePoint, MarkedCurve};
+use super::found::FoundValues;
 use super::nominal::{Nominal, running_head};
 use super::options::{GaugeFrom, MeasureOptions};
 use super::quantity::Quantity;
@@ -25,16 +25,16 @@ const FARTHEST: f64 = 25.0;
 
 /// A running head with its top and what is left of it.
 struct Head<'a> {
-    whole: &'a Curve,
+    whole: &'a MarkedCurve,
     /// From the bottom of the groove, if there is one, to the field side.
-    curve: Curve,
-    top: Place,
+    curve: MarkedCurve,
+    top: CurvePoint,
     /// Index of the groove's bottom in `whole`.
     groove: Option<usize>,
 }
 
 impl<'a> Head<'a> {
-    fn new(whole: &'a Curve) -> Result<Self, String> {
+    fn new(whole: &'a MarkedCurve) -> Result<Self, String> {
         let (curve, groove) = running_head(whole);
         let top = curve.highest(1.0).ok_or("no points")?;
         if top.mark == 0 || top.mark + 1 >= curve.marks.len() {
@@ -90,8 +90,12 @@ impl<'a> Head<'a> {
 }
 
 /// Measures a rail.
-pub(super) fn measure(curve: &Curve, nominal: Option<&Nominal>, options: &MeasureOptions) -> Found {
-    let mut found = Found::default();
+pub(super) fn measure(
+    curve: &MarkedCurve,
+    nominal: Option<&Nominal>,
+    options: &MeasureOptions,
+) -> FoundValues {
+    let mut found = FoundValues::default();
     let head = match Head::new(curve) {
         Ok(head) => head,
         Err(why) => {
@@ -126,7 +130,7 @@ pub(super) fn measure(curve: &Curve, nominal: Option<&Nominal>, options: &Measur
 }
 
 /// Measures what a head has lost of the nominal one.
-fn wear(found: &mut Found, head: &Head, drawn: &Head, options: &MeasureOptions) {
+fn wear(found: &mut FoundValues, head: &Head, drawn: &Head, options: &MeasureOptions) {
     let crown = head.curve.at_x(drawn.top.x).iter().map(|place| place.z).fold(f64::NEG_INFINITY, f64::max);
     let none = || format!("no points over the nominal's top, x = {:.3} mm", drawn.top.x);
     found.put(Quantity::W1, if crown.is_finite() { Ok(drawn.top.z - crown) } else { Err(none()) });

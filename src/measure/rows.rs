@@ -38,7 +38,7 @@ const SPREAD: [SpreadColumn; 9] = [
 
 /// What was measured of a file, or why nothing was.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct MeasureRow {
     /// Name of the file or profile.
     pub file: String,
     /// Its body, where it is known.
@@ -47,7 +47,7 @@ pub struct Row {
     pub measured: Result<Measures>,
 }
 
-impl Row {
+impl MeasureRow {
     /// Returns what breaks the limits; a file that cannot be measured breaks any.
     pub fn broken(&self, limits: &Limits) -> Vec<String> {
         match &self.measured {
@@ -98,7 +98,7 @@ impl Row {
 }
 
 /// Writes rows as CSV, with a header; empty where there is no value.
-pub fn csv(rows: &[Row], columns: RowColumns) -> String {
+pub fn csv(rows: &[MeasureRow], columns: RowColumns) -> String {
     let mut text = String::new();
     for (k, row) in rows.iter().enumerate() {
         let values = row.values(columns);
@@ -125,7 +125,7 @@ fn cell(value: &Value) -> String {
 }
 
 /// Writes rows as a JSON list of objects, with null where there is no value.
-pub fn json(rows: &[Row], columns: RowColumns) -> String {
+pub fn json(rows: &[MeasureRow], columns: RowColumns) -> String {
     let list: Vec<Value> = rows.iter().map(|row| row.values(columns).into()).collect();
     // Values without infinities cannot fail to be written.
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
@@ -137,8 +137,8 @@ pub(crate) fn in_micrometres(value: f64) -> String {
 }
 
 /// Writes rows as a table of the quantities that any of them has, with alignments, broken limits and findings below it.
-pub fn table(rows: &[Row], columns: RowColumns) -> String {
-    let of = |row: &Row, quantity| {
+pub fn table(rows: &[MeasureRow], columns: RowColumns) -> String {
+    let of = |row: &MeasureRow, quantity| {
         row.measured.as_ref().ok().and_then(|of| Some((of.value(quantity)?, of.if_off(quantity))))
     };
     let shown: Vec<Quantity> = Quantity::ALL
@@ -167,7 +167,7 @@ pub fn table(rows: &[Row], columns: RowColumns) -> String {
 }
 
 /// Writes alignment, broken limits, findings and spreads of a row.
-fn notes(row: &Row, columns: RowColumns) -> String {
+fn notes(row: &MeasureRow, columns: RowColumns) -> String {
     let mut text = String::new();
     let mut say = |what: &str, found: &str| {
         // Writing to a string cannot fail.
@@ -184,7 +184,7 @@ fn notes(row: &Row, columns: RowColumns) -> String {
 }
 
 /// Writes the spread of each quantity that a row has.
-fn spreads(row: &Row, columns: RowColumns) -> String {
+fn spreads(row: &MeasureRow, columns: RowColumns) -> String {
     let (Some(over), Ok(measures)) = (columns.spread, &row.measured) else { return String::new() };
     let known =
         Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity.key(), measures.spread(quantity)?)));

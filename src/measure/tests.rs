@@ -4,7 +4,7 @@ mod page;
 mod rail;
 mod spread;
 
-use super::curve::Curve;
+use super::curve::MarkedCurve;
 use super::*;
 use crate::error::Result;
 use crate::measured::{self, CurveKind};
@@ -148,7 +148,7 @@ fn hollow_wear_is_the_depth_below_the_field_side() -> Result<()> {
     )?;
     // The highest and the lowest place of the same heights, over points every 0.01 mm.
     let height = |x: f64| {
-        let lowest = Curve::new(&nominal).at_x(x).iter().map(|at| at.z).fold(f64::INFINITY, f64::min);
+        let lowest = MarkedCurve::new(&nominal).at_x(x).iter().map(|at| at.z).fold(f64::INFINITY, f64::min);
         lowest + bump(x, [-25.0, 40.0], 3.0)
     };
     let (mut top, mut rise) = (f64::NEG_INFINITY, 0.0f64);

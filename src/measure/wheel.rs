@@ -1,7 +1,7 @@
 //! The quantities of wheels. X counts from the flange back to the field side, Y = −z.
 
-use super::curve::{Curve, Place};
-use super::found::Found;
+use super::curve::{CurvePoint, MarkedCurve};
+use super::found::FoundValues;
 use super::nominal::Nominal;
 use super::options::MeasureOptions;
 use super::quantity::Quantity;
@@ -13,12 +13,12 @@ const TREAD: f64 = 0.5;
 
 /// Measures a wheel whose X = 0 is at x = `back`; `no_back` says why it has no flange back there.
 pub(super) fn measure(
-    curve: &Curve,
+    curve: &MarkedCurve,
     (back, no_back): (f64, Option<&str>),
     nominal: Option<&Nominal>,
     options: &MeasureOptions,
-) -> Found {
-    let mut found = Found::default();
+) -> FoundValues {
+    let mut found = FoundValues::default();
     let tread = tread(curve, back, options);
     let tip = tip(curve, back, options);
     let face = |over: f64| face(curve, tip.clone()?, tread.clone()? - over, back + options.tread_at);
@@ -46,7 +46,7 @@ pub(super) fn measure(
 ///
 /// # Errors
 /// No points there.
-pub(super) fn tread(curve: &Curve, back: f64, options: &MeasureOptions) -> Result<f64, String> {
+pub(super) fn tread(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<f64, String> {
     let lowest =
         curve.at_x(back + options.tread_at).iter().map(|place| place.z).fold(f64::INFINITY, f64::min);
     if lowest.is_finite() {
@@ -57,7 +57,7 @@ pub(super) fn tread(curve: &Curve, back: f64, options: &MeasureOptions) -> Resul
 }
 
 /// Returns the tip of the flange.
-fn tip(curve: &Curve, back: f64, options: &MeasureOptions) -> Result<Place, String> {
+fn tip(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<CurvePoint, String> {
     let tip = curve.highest(-1.0).ok_or("no points")?;
     let x = tip.x - back;
     if tip.mark == 0 || tip.mark + 1 >= curve.marks.len() {
@@ -71,9 +71,9 @@ fn tip(curve: &Curve, back: f64, options: &MeasureOptions) -> Result<Place, Stri
 }
 
 /// Returns x of the flange's face at a height \[mm\]: the nearest to the tread.
-fn face(curve: &Curve, tip: Place, z: f64, tread_x: f64) -> Result<f64, String> {
+fn face(curve: &MarkedCurve, tip: CurvePoint, z: f64, tread_x: f64) -> Result<f64, String> {
     let all = curve.at_z(z);
-    let beyond = |place: &&Place| place.mark >= tip.mark && place.x > tip.x && place.x < tread_x;
+    let beyond = |place: &&CurvePoint| place.mark >= tip.mark && place.x > tip.x && place.x < tread_x;
     all.iter()
         .rfind(beyond)
         .map(|place| place.x)
@@ -81,7 +81,7 @@ fn face(curve: &Curve, tip: Place, z: f64, tread_x: f64) -> Result<f64, String> 
 }
 
 /// Returns x of the flange back at a height \[mm\].
-fn behind(curve: &Curve, tip: Place, z: f64) -> Result<f64, String> {
+fn behind(curve: &MarkedCurve, tip: CurvePoint, z: f64) -> Result<f64, String> {
     let all = curve.at_z(z);
     all.iter()
         .rfind(|place| place.mark <= tip.mark && place.x < tip.x)
@@ -89,13 +89,19 @@ fn behind(curve: &Curve, tip: Place, z: f64) -> Result<f64, String> {
         .ok_or_else(|| format!("no flange back {:.3} mm over the flange's tip", z - tip.z))
 }
 
-fn qr(curve: &Curve, tip: Place, thickness: f64, back: f64, options: &MeasureOptions) -> Result<f64, String> {
+fn qr(
+    curve: &MarkedCurve,
+    tip: CurvePoint,
+    thickness: f64,
+    back: f64,
+    options: &MeasureOptions,
+) -> Result<f64, String> {
     let upper = face(curve, tip, tip.z + options.tip_depth, back + options.tread_at)?;
     Ok(thickness - (upper - back))
 }
 
 /// Returns the largest rise of Y towards the field side \[mm\] on the way from the tip.
-fn hollow(curve: &Curve, tip: Place, back: f64, options: &MeasureOptions) -> Result<f64, String> {
+fn hollow(curve: &MarkedCurve, tip: CurvePoint, back: f64, options: &MeasureOptions) -> Result<f64, String> {
     let end = curve.extent().high - back;
     if end < options.tread_at + LEAST_TREAD {
         let least = options.tread_at + LEAST_TREAD;
@@ -110,7 +116,7 @@ fn hollow(curve: &Curve, tip: Place, back: f64, options: &MeasureOptions) -> Res
 }
 
 /// Returns the largest vertical distance \[mm\] of the tread above that of the nominal, over the nominal tread from the flange's face.
-fn most_worn(curve: &Curve, nominal: &Nominal, options: &MeasureOptions) -> Result<f64, String> {
+fn most_worn(curve: &MarkedCurve, nominal: &Nominal, options: &MeasureOptions) -> Result<f64, String> {
     let own = &nominal.curve;
     let tip = tip(own, nominal.back, options)?;
     let level = tread(own, nominal.back, options)? - options.flange_level;

@@ -37,8 +37,8 @@ pub use place::{Step, Transform};
 pub use read::format::Format;
 pub use read::points::{DesignElement, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
 pub use read::scan::LARGEST_FILE;
-pub use read::slices::{MOST_SLICES, Slice, SliceList, listed_body};
-pub use slice::{Cut, CutRecord, Share};
+pub use read::slices::{ListedSlice, MOST_SLICES, SliceList, listed_body};
+pub use slice::{CutRecord, SectionOfList, Share};
 pub use unit::Unit;
 
 use serde::Serialize;
@@ -173,16 +173,16 @@ pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>>
 }
 
 /// Makes the profile of a section between slices. `file` is the name of the list, and `contents` gives the bytes of a
-/// slice by its name in [`Cut::files`], which is asked for once.
+/// slice by its name in [`SectionOfList::files`], which is asked for once.
 ///
-/// Options hold for every slice. See [`Cut`] for the place; the accuracy is in `docs/measured-files.md`.
+/// Options hold for every slice. See [`SectionOfList`] for the place; the accuracy is in `docs/measured-files.md`.
 ///
 /// # Errors
 /// The errors of [`profile`] for each slice, with its name; slices that are turned differently, have an origin of their
 /// own each, or have no part in common.
 pub fn section(
     file: &str,
-    cut: &Cut<'_>,
+    cut: &SectionOfList<'_>,
     contents: &[(&str, Vec<u8>)],
     side: Side,
     options: &Options,

@@ -104,7 +104,7 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transf
 }
 
 /// A question that neither option, format nor shape answers.
-struct Question {
+struct OpenQuestion {
     what: &'static str,
     /// What the shape does not show.
     found: &'static str,
@@ -112,9 +112,10 @@ struct Question {
 }
 
 /// Returns the error that asks all open questions at once; a shape that looks like the other body comes first.
-fn asked(open: &[Question], points: &[Point], side: Side, stated: bool) -> Error {
-    let list =
-        |part: fn(&Question) -> &str, between: &str| open.iter().map(part).collect::<Vec<_>>().join(between);
+fn asked(open: &[OpenQuestion], points: &[Point], side: Side, stated: bool) -> Error {
+    let list = |part: fn(&OpenQuestion) -> &str, between: &str| {
+        open.iter().map(part).collect::<Vec<_>>().join(between)
+    };
     let mut advice =
         if open.len() > 1 { "give both options".to_owned() } else { "give the option".to_owned() };
     if !stated {
@@ -157,14 +158,14 @@ fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64
 }
 
 /// One of the two questions about the orientation: `mirror` or `flip_z`.
-struct Axis {
+struct Orientation {
     what: &'static str,
     option: Option<bool>,
     format: Format,
     definition: Option<bool>,
 }
 
-impl Axis {
+impl Orientation {
     /// Decides the question; `None` leaves it open.
     fn decide(&self, proof: Option<(bool, String)>, steps: &mut Vec<Step>) -> Option<bool> {
         let (turn, because) = match (self.option, self.definition, proof) {
@@ -198,7 +199,7 @@ impl Axis {
         Some(Finding::orientation(at.first()?, found))
     }
 
-    fn question(&self, side: Side) -> Question {
+    fn question(&self, side: Side) -> OpenQuestion {
         let (found, yes, no) = match (self.what, side) {
             ("mirror", Side::Rail) => (
                 "a rail whose gauge side nothing proves (not just one side face)",
@@ -222,17 +223,17 @@ impl Axis {
             ),
         };
         let choices = format!("`{0} = true` ({yes}) or `{0} = false` ({no})", self.what);
-        Question { what: self.what, found, choices }
+        OpenQuestion { what: self.what, found, choices }
     }
 }
 
 impl Transform {
     /// Turns the axes upright and to the right hand; returns the definitions that the shape contradicts, and what is left open.
-    fn turn(&mut self, points: &Points, side: Side, options: &Options) -> (Vec<Finding>, Vec<Question>) {
+    fn turn(&mut self, points: &Points, side: Side, options: &Options) -> (Vec<Finding>, Vec<OpenQuestion>) {
         let [mirror, flip] = definition(points.format, side);
         let (mut findings, mut open) = (Vec::new(), Vec::new());
         let flipped =
-            Axis { what: "flip_z", option: options.flip_z, format: points.format, definition: flip };
+            Orientation { what: "flip_z", option: options.flip_z, format: points.format, definition: flip };
         let proof = head_up(&self.points(&points.at), side).map(|(up, why)| (!up, why));
         findings.extend(flipped.contradiction(proof.as_ref(), &points.at));
         let turned = flipped.decide(proof, &mut self.steps);
@@ -240,7 +241,7 @@ impl Transform {
             self.scale[1] = -self.scale[1];
         }
         let mirrored =
-            Axis { what: "mirror", option: options.mirror, format: points.format, definition: mirror };
+            Orientation { what: "mirror", option: options.mirror, format: points.format, definition: mirror };
         // A profile that may be on its head has no sides.
         let proof = turned.and_then(|_| {
             let upright = self.points(&points.at);

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::clean::checks::{SAME_POINT, distance};
 use super::options::Options;
 use super::read::points::Point;
-use super::read::slices::{Slice, SliceList, unit};
+use super::read::slices::{ListedSlice, SliceList, unit};
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
 use crate::profile::Side;
@@ -16,13 +16,13 @@ const SAME_PLACE: f64 = 1e-6;
 
 /// A section of a variable profile: where it lies, and what of the list belongs to it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cut<'a> {
+pub struct SectionOfList<'a> {
     side: Side,
     /// Position along the track \[mm\] or around the wheel \[rad\], in [−π, π).
     at: f64,
-    first: &'a Slice,
+    first: &'a ListedSlice,
     /// The slice after it, and its share in (0, 1).
-    second: Option<(&'a Slice, f64)>,
+    second: Option<(&'a ListedSlice, f64)>,
 }
 
 /// Where a section was cut, and what it was made of; written to summary.json.
@@ -55,7 +55,7 @@ fn around(angle: f64) -> f64 {
     if (-PI..PI).contains(&angle) { angle } else { (angle + PI).rem_euclid(TAU) - PI }
 }
 
-impl<'a> Cut<'a> {
+impl<'a> SectionOfList<'a> {
     /// Finds the slices around the place that the options name.
     ///
     /// A wheel is periodic; where its list leaves out a part of the circumference, the nearest slice at that end holds.
@@ -145,7 +145,7 @@ impl<'a> Cut<'a> {
         if self.side == Side::Wheel {
             points.reverse();
         }
-        let share = |slice: &Slice, share| Share { file: slice.file.clone(), at: slice.at, share };
+        let share = |slice: &ListedSlice, share| Share { file: slice.file.clone(), at: slice.at, share };
         let rest = self.second.map_or(0.0, |(_, share)| share);
         let slices: Vec<Share> = [share(self.first, 1.0 - rest)]
             .into_iter()
@@ -162,7 +162,7 @@ impl<'a> Cut<'a> {
     }
 
     /// Lays the features of a slice out along its points.
-    fn path(&self, slice: &Slice, mut points: Vec<Point>) -> Result<Path> {
+    fn path(&self, slice: &ListedSlice, mut points: Vec<Point>) -> Result<Path> {
         if self.side == Side::Wheel {
             points.reverse();
         }

@@ -16,7 +16,7 @@ const ANGLE: f64 = 30.5;
 
 /// Points of the interior and triangles of a region.
 #[derive(Debug, Clone)]
-pub(super) struct Region {
+pub(super) struct MeshRegion {
     /// Points (ξ, η) \[mm\]: those given, then the new ones.
     pub(super) points: Vec<Point2<f64>>,
     /// Corners of the triangles, counter-clockwise.
@@ -36,7 +36,7 @@ pub(super) fn refined(
     largest_area: f64,
     most_points: usize,
     keep: bool,
-) -> Result<Region> {
+) -> Result<MeshRegion> {
     let mut delaunay = triangulated(points, edges)?;
     let parameters = RefinementParameters::new()
         .exclude_outer_faces(true)
@@ -59,7 +59,7 @@ pub(super) fn refined(
 ///
 /// # Errors
 /// Edges that cross.
-pub(super) fn retriangulated(points: &[Point2<f64>], edges: &[[usize; 2]]) -> Result<Region> {
+pub(super) fn retriangulated(points: &[Point2<f64>], edges: &[[usize; 2]]) -> Result<MeshRegion> {
     Ok(inside(&triangulated(points, edges)?))
 }
 
@@ -81,7 +81,7 @@ fn refused(error: InsertionError) -> Error {
 }
 
 /// Returns all points, and the triangles inside an odd number of closed chains.
-fn inside(delaunay: &Delaunay) -> Region {
+fn inside(delaunay: &Delaunay) -> MeshRegion {
     let points = delaunay.vertices().map(|vertex| vertex.position());
     let points = points.map(|point| Point2::new(point.x, point.y)).collect();
     // 0: not reached yet, 1: outside, 2: inside.
@@ -106,7 +106,7 @@ fn inside(delaunay: &Delaunay) -> Region {
     }
     let inner = delaunay.inner_faces().filter(|face| sides[face.fix().index()] == 2);
     let triangles = inner.map(|face| face.vertices().map(|vertex| vertex.fix().index())).collect();
-    Region { points, triangles, divided: Vec::new() }
+    MeshRegion { points, triangles, divided: Vec::new() }
 }
 
 /// Returns which of the edges were divided, and where.

@@ -16,8 +16,8 @@ mod triangles;
 #[cfg(feature = "files")]
 pub(crate) use axes::CELLS_REACHED;
 pub use axes::{Axes, GridGroup, MOST_ON_AXIS, MOST_POINTS, equal_steps, groups};
-pub use quality::{Quality, Spread};
+pub use quality::{Quality, QualityRange};
 pub use shells::{BodyShell, axle_point};
-pub use strips::{Cell, StripCounts, StripMesh};
+pub use strips::{StripCell, StripCounts, StripMesh};
 pub use surfaces::Surface;
 pub use triangles::{BoundaryChain, TriangleMesh, checked_size};

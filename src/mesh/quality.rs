@@ -10,7 +10,7 @@ use crate::numerics::interval::Interval;
 
 /// The least, largest and mean value over all cells.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spread {
+pub struct QualityRange {
     /// Least value.
     pub min: f64,
     /// Largest value.
@@ -29,12 +29,12 @@ pub struct Quality {
     /// Number of cells with a corner that turns the wrong way or not at all; 0 in a sound mesh.
     pub inverted: usize,
     /// Longest side over shortest side, at least 1.
-    pub aspect_ratio: Spread,
+    pub aspect_ratio: QualityRange,
     /// Equiangle skewness, from 0 (square, equilateral) to 1 (flat): the larger of (θ_max − θ_e)/(π − θ_e) and (θ_e −
     /// θ_min)/θ_e, with θ_e = π/2 for quads or π/3 for triangles.
-    pub skewness: Spread,
+    pub skewness: QualityRange,
     /// Smallest angle of a cell \[rad\], up to π/2.
-    pub smallest_angle_rad: Spread,
+    pub smallest_angle_rad: QualityRange,
 }
 
 impl Quality {
@@ -71,7 +71,7 @@ impl Quality {
         let shapes: Vec<CellShape> = shapes.collect();
         let spread = |value: fn(&CellShape) -> f64| {
             let Interval { low: min, high: max } = Interval::around(shapes.iter().map(value));
-            Spread { min, max, mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64 }
+            QualityRange { min, max, mean: shapes.iter().map(value).sum::<f64>() / shapes.len() as f64 }
         };
         (!shapes.is_empty()).then(|| Self {
             cells: shapes.len(),

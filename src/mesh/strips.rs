@@ -18,7 +18,7 @@ use super::lines::{BandMeeting, between, lines};
 use crate::error::{Error, ErrorKind, Result};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, lanes};
-use crate::patch::{Band, Component, Patch, Places};
+use crate::patch::{Band, BandPlaces, Component, Patch};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
@@ -54,7 +54,7 @@ impl Default for StripCounts {
 
 /// A cell of a strip mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
+pub struct StripCell {
     /// Index of the cell's component.
     pub component: usize,
     /// Index of the strip within the component, from 0, band by band by ascending ξ; index of the cell within the strip,
@@ -70,7 +70,7 @@ pub struct Cell {
     pub separation: f64,
 }
 
-impl Cell {
+impl StripCell {
     /// Returns the corners without repetition: four, or three at a tip.
     pub fn vertices(&self) -> &[usize] {
         if self.corners[0] == self.corners[3] { &self.corners[..3] } else { &self.corners }
@@ -100,7 +100,7 @@ pub struct StripMesh {
     /// Points (ξ, η, ζ^R) \[mm\] on the rail's surface.
     pub points: Vec<Point3<f64>>,
     /// Cells by component, then by strip, then by η.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<StripCell>,
 }
 
 impl StripMesh {
@@ -209,7 +209,7 @@ impl StripBuilder<'_> {
         for j in 0..self.eta.len() {
             let quad = [rows[0][j], rows[1][j], rows[1][j + 1], rows[0][j + 1]];
             if let Some(corners) = tip_first(quad) {
-                self.mesh.cells.push(Cell {
+                self.mesh.cells.push(StripCell {
                     component,
                     place: [strip, j],
                     corners,
@@ -249,7 +249,7 @@ impl StripBuilder<'_> {
         // A mean of values that change sign is computed from an offset. The demanded accuracy then refers to the size of
         // the offset.
         let offset = band.sides.into_iter().fold(xi.width(), |most, eta| eta.magnitude().max(most));
-        let weighted = |at: &Places| {
+        let weighted = |at: &BandPlaces| {
             let [low, high] = &at.edges;
             let width: Lanes = lanes(|k| high[k] - low[k]);
             [

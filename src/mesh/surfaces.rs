@@ -7,7 +7,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3, distance_squared};
 
 use crate::error::{Error, ErrorKind, Result, finite};
-use crate::lofted::{FramedLoft, Strip, joined};
+use crate::lofted::{FramedLoft, LoftStrip, joined};
 use crate::numerics::interval::Interval;
 use crate::patch::Window;
 use crate::placement::Placement;
@@ -122,7 +122,7 @@ impl Surface {
         let parts = joined(lofted.loft(), foot.strip, along);
         let at = |part: usize, y: f64| {
             let same =
-                |strip: &&Strip| strip.part == strips[part].part && strip.cells() == strips[part].cells();
+                |strip: &&LoftStrip| strip.part == strips[part].part && strip.cells() == strips[part].cells();
             strips.iter().filter(same).find(|strip| strip.holds(y))
         };
         let [xi, eta] = [window.xi, window.eta].map(|side| side.with(0.0));

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_6, TAU};
 use nalgebra::{Point2, Point3};
 
 use super::boundary::{BoundaryTracer, Ring};
-use super::delaunay::{self, Region};
+use super::delaunay::{self, MeshRegion};
 use super::smoothing::{angles, smooth};
 use super::spacing::{self, BoundaryNode, EdgeLimits};
 use crate::error::{Error, ErrorKind, Result, finite};
@@ -232,8 +232,8 @@ fn best(
     rings: &[Ring],
     area: f64,
     size: f64,
-) -> Result<(Region, Vec<Vec<BoundaryNode>>)> {
-    let mut best: Option<(f64, Region, Vec<Vec<BoundaryNode>>)> = None;
+) -> Result<(MeshRegion, Vec<Vec<BoundaryNode>>)> {
+    let mut best: Option<(f64, MeshRegion, Vec<Vec<BoundaryNode>>)> = None;
     let mut made = 0;
     for attempt in 0..ATTEMPTS {
         let share = SHORTER.powi(attempt);
@@ -258,7 +258,7 @@ fn sharp_nodes(chains: &[Vec<BoundaryNode>]) -> Vec<bool> {
 }
 
 /// Returns the smallest angle \[rad\] of all triangles that have no sharp node.
-fn least_angle(region: &Region, sharp: &[bool]) -> f64 {
+fn least_angle(region: &MeshRegion, sharp: &[bool]) -> f64 {
     let is_sharp = |node: &usize| sharp.get(*node).copied().unwrap_or(false);
     let away = region.triangles.iter().filter(|triangle| !triangle.iter().any(is_sharp));
     away.flat_map(|triangle| angles(triangle.map(|node| region.points[node]))).fold(f64::INFINITY, f64::min)
@@ -273,7 +273,7 @@ fn meshed(
     area: f64,
     size: f64,
     made: &mut usize,
-) -> Result<Region> {
+) -> Result<MeshRegion> {
     let largest = AREA_SHARE * size * size * 3f64.sqrt() / 4.0;
     let most = MOST_ADDED + 4.0 * area / largest;
     for round in 0..=ROUNDS {
@@ -386,7 +386,7 @@ fn divide(
 }
 
 /// Smooths the inner nodes of a region, and keeps what is not worse than before.
-fn smoothed(mut region: Region, fixed: usize, edges: &[[usize; 2]]) -> Result<Region> {
+fn smoothed(mut region: MeshRegion, fixed: usize, edges: &[[usize; 2]]) -> Result<MeshRegion> {
     for _ in 0..SMOOTHINGS {
         let mut points = region.points.clone();
         smooth(&mut points, &region.triangles, fixed);

@@ -67,13 +67,13 @@ pub fn coefficients(values: &Lanes) -> Lanes {
 
 /// Computes [`coefficients`] by the vector code of this machine, for callers that are compiled for the plainest one.
 pub fn coefficients_by_vectors(values: &Lanes) -> Lanes {
-    pulp::Arch::new().dispatch(Fit(values))
+    pulp::Arch::new().dispatch(NodeValues(values))
 }
 
 /// Values of which the coefficients are sought.
-struct Fit<'a>(&'a Lanes);
+struct NodeValues<'a>(&'a Lanes);
 
-impl pulp::WithSimd for Fit<'_> {
+impl pulp::WithSimd for NodeValues<'_> {
     type Output = Lanes;
 
     #[inline(always)]

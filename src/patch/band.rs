@@ -4,7 +4,7 @@ use super::edges::EdgeFinder;
 use super::grading::Grading;
 use super::outline::{End, Outline};
 use super::slice::Slice;
-use super::stretch::{Fit, Stretch};
+use super::stretch::{Stretch, StretchFit};
 use super::varying::SMOOTH;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
@@ -108,7 +108,7 @@ impl Band {
                 [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
             })
         };
-        let mut fit = Fit { edges, band: self.xi, zero, root, noise };
+        let mut fit = StretchFit { edges, band: self.xi, zero, root, noise };
         for pair in corners.windows(2) {
             fit.add(Interval::new(pair[0], pair[1]), &mut stretches);
         }
@@ -193,7 +193,7 @@ impl Band {
         &self,
         xi: Interval,
         with_slopes: bool,
-        f: impl Fn(&Places) -> [Lanes; N],
+        f: impl Fn(&BandPlaces) -> [Lanes; N],
         relative: [f64; N],
     ) -> [f64; N] {
         let grading = self.grading();
@@ -253,7 +253,7 @@ impl Band {
 
 /// 16 places of a band.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Places {
+pub(crate) struct BandPlaces {
     /// ξ \[mm\].
     pub(crate) xi: Lanes,
     /// dξ/dt of the grading \[mm\].
@@ -264,7 +264,7 @@ pub(crate) struct Places {
     pub(super) slopes: [Lanes; 2],
 }
 
-impl Places {
+impl BandPlaces {
     /// Cuts the edges off at the window, along which their slopes are 0.
     fn clipped(mut self, window: Interval) -> Self {
         for branch in 0..2 {
@@ -287,15 +287,15 @@ struct PlacesAt<'b> {
 }
 
 impl pulp::WithSimd for PlacesAt<'_> {
-    type Output = Places;
+    type Output = BandPlaces;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Places {
+    fn with_simd<S: pulp::Simd>(self, _: S) -> BandPlaces {
         let Self { stretch, grading, with_slopes, t } = self;
         let [xi, rate] = grading.xi_and_rate(t);
         let [edges, slopes] =
             if with_slopes { stretch.edges_and_slopes(&xi) } else { [stretch.edges(&xi), [[0.0; MANY]; 2]] };
-        Places { xi, rate, edges, slopes }
+        BandPlaces { xi, rate, edges, slopes }
     }
 }
 

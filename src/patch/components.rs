@@ -166,14 +166,14 @@ impl Patch {
 }
 
 /// The bands of one component, before it is measured.
-struct Region {
+struct BandGroup {
     bands: Vec<Band>,
     /// Places at which s may be least.
     turns: Vec<Turn>,
 }
 
 /// Collects the bands of the patch into components, by ascending ξ.
-fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
+fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
     let placement = outline.slicer.placement();
     let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
         varying::bands(varying, placement, &outline.window)
@@ -194,21 +194,21 @@ fn regions(outline: &mut Outline<'_>) -> Vec<Region> {
         let (kept, joined) = (first[i].min(first[j]), first[i].max(first[j]));
         first.iter_mut().filter(|k| **k == joined).for_each(|k| *k = kept);
     }
-    let mut regions: Vec<Region> = Vec::new();
+    let mut regions: Vec<BandGroup> = Vec::new();
     let mut heads: Vec<usize> = Vec::new();
     for (band, head) in bands.into_iter().zip(first) {
         match heads.iter().position(|known| *known == head) {
             Some(place) => regions[place].bands.push(band),
             None => {
                 heads.push(head);
-                regions.push(Region { bands: vec![band], turns: turns.clone() });
+                regions.push(BandGroup { bands: vec![band], turns: turns.clone() });
             }
         }
     }
     regions
 }
 
-impl Region {
+impl BandGroup {
     fn xi(&self) -> Interval {
         self.bands.iter().fold(Interval::NONE, |xi, band| xi.hull(band.xi))
     }

@@ -16,7 +16,7 @@ use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::placement::Placement;
 use crate::profile::{Branch, Piece, Section};
 use crate::separation::contact_gaps;
-use crate::separation::wheel_surface::Surface;
+use crate::separation::wheel_surface::WheelSurface;
 
 /// Most solutions of the quadratic equation; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 12;
@@ -31,7 +31,7 @@ const STEEPEST: f64 = 64.0;
 #[derive(Debug)]
 pub(super) struct EdgeFinder<'a> {
     rail: &'a Section,
-    wheel: Surface<'a>,
+    wheel: WheelSurface<'a>,
     /// Approach δ \[mm\].
     approach: f64,
     /// cos χ.
@@ -51,7 +51,7 @@ impl<'a> EdgeFinder<'a> {
         let skew = placement.skew_rotation();
         Self {
             rail: &placement.rail().section,
-            wheel: Surface::new(placement),
+            wheel: WheelSurface::new(placement),
             approach,
             cos: skew.re,
             sin: skew.im,

@@ -1,6 +1,6 @@
 //! Integrates the area of a band and the length of its branches.
 
-use super::band::{Band, Places};
+use super::band::{Band, BandPlaces};
 use crate::numerics::lanes::lanes;
 
 /// Relative accuracy demanded of the quadrature of the area.
@@ -11,7 +11,7 @@ const PERIMETER_DEMAND: f64 = 1e-11;
 
 /// Returns the area of a band and the length of both its branches \[mm², mm\].
 pub(super) fn area_and_length(band: &Band) -> [f64; 2] {
-    let width_and_speed = |at: &Places| {
+    let width_and_speed = |at: &BandPlaces| {
         let ([low, high], slopes) = (&at.edges, &at.slopes);
         // A slope is infinite only where rounding has moved ξ onto a round end, which contributes nothing.
         let speed = |slope: f64| if slope.is_finite() { (1.0 + slope * slope).sqrt() } else { 0.0 };

@@ -18,7 +18,7 @@ pub(crate) mod turning_points;
 mod varying;
 mod window;
 
-pub(crate) use band::{Band, Places};
+pub(crate) use band::{Band, BandPlaces};
 pub use components::{Component, Patch};
 pub(crate) use loops::{BandSide, rings};
 pub use outline::{End, Outline};

@@ -12,7 +12,7 @@ use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY};
 use crate::placement::Placement;
 use crate::separation::span::{SagittaPoint, Span};
-use crate::separation::wheel_surface::Surface;
+use crate::separation::wheel_surface::WheelSurface;
 use crate::separation::{Evaluator, midplane_gap};
 
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
@@ -43,7 +43,7 @@ pub struct Slice {
 #[derive(Debug)]
 pub struct Slicer<'a> {
     pub(super) placement: &'a Placement,
-    wheel: Surface<'a>,
+    wheel: WheelSurface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
     /// The slices of swept bodies on a roller, or over the rail's surface; `None` over the tangent plane of a rail.
@@ -69,7 +69,7 @@ impl<'a> Slicer<'a> {
         let skewed = !varies && !by_roots && placement.skew() != 0.0;
         Self {
             placement,
-            wheel: Surface::new(placement),
+            wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
             by_roots: by_roots.then(|| ByRoots::new(placement, approach, level())),

@@ -43,12 +43,12 @@ const EDGE_ROUNDINGS: f64 = 8.0;
 pub(crate) struct Stretch {
     /// Range of ξ \[mm\].
     pub(crate) xi: Interval,
-    curve: Curve,
+    curve: EdgeCurve,
 }
 
 /// A sum of Chebyshev polynomials over (−1, 1).
 #[derive(Debug, Clone, PartialEq)]
-struct Series {
+struct EdgeSeries {
     coefficients: Lanes,
     /// Number of coefficients that are not rounding, at least 1.
     count: usize,
@@ -56,16 +56,16 @@ struct Series {
 
 /// How the edges vary over a stretch.
 #[derive(Debug, Clone, PartialEq)]
-enum Curve {
+enum EdgeCurve {
     /// Functions of ξ: the square of half the width, divided by the distance from either end at which the width is zero, and the
     /// middle between the edges.
-    Width { zero: [bool; 2], square: Series, middle: Series },
+    Width { zero: [bool; 2], square: EdgeSeries, middle: EdgeSeries },
     /// The edges themselves as functions of the square root of the distance from the first (0) or last (1) ξ.
-    Root { from: usize, edges: [Series; 2] },
+    Root { from: usize, edges: [EdgeSeries; 2] },
 }
 
 /// Fits stretches to the edges of a band.
-pub(super) struct Fit<F> {
+pub(super) struct StretchFit<F> {
     /// Gives both edges \[mm\] at 16 values of ξ.
     pub(super) edges: F,
     /// Range of ξ of the band \[mm\].
@@ -78,7 +78,7 @@ pub(super) struct Fit<F> {
     pub(super) noise: f64,
 }
 
-impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
+impl<F: FnMut(&Lanes) -> [Lanes; 2]> StretchFit<F> {
     /// Appends the stretches between two neighbouring corners.
     ///
     /// Method: the interpolant at 16 Chebyshev points of ξ; if its last coefficients are no rounding, of the square root of the
@@ -126,10 +126,10 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
             (middle[k], square[k]) = (low[k] + width, width * width / far);
         }
         let rounding = rounding(largest(&middle), narrowest, noise);
-        let (square, first) = Series::new(&square, noise / nearest);
-        let (middle, second) = Series::new(&middle, rounding);
+        let (square, first) = EdgeSeries::new(&square, noise / nearest);
+        let (middle, second) = EdgeSeries::new(&middle, rounding);
         let resolved = first && second;
-        let curve = Curve::Width { zero, square, middle };
+        let curve = EdgeCurve::Width { zero, square, middle };
         (Stretch { xi, curve }, resolved)
     }
 
@@ -141,8 +141,8 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> Fit<F> {
             (self.edges)(&lanes(|k| if from == 0 { xi.low + away(k) } else { xi.high - away(k) }));
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
         let rounding = rounding(largest(&low).max(largest(&high)), narrowest, noise);
-        let [(low, first), (high, second)] = [low, high].map(|values| Series::new(&values, rounding));
-        (Stretch { xi, curve: Curve::Root { from, edges: [low, high] } }, first && second)
+        let [(low, first), (high, second)] = [low, high].map(|values| EdgeSeries::new(&values, rounding));
+        (Stretch { xi, curve: EdgeCurve::Root { from, edges: [low, high] } }, first && second)
     }
 }
 
@@ -151,7 +151,7 @@ impl Stretch {
     #[inline(always)]
     pub(crate) fn edges<const N: usize>(&self, xi: &Lanes<N>) -> [Lanes<N>; 2] {
         match &self.curve {
-            Curve::Width { zero, square, middle } => {
+            EdgeCurve::Width { zero, square, middle } => {
                 let t: Lanes<N> = lanes(|k| self.parameter(xi[k]));
                 let (square, middle) = (square.values(&t), middle.values(&t));
                 // Rounding may make the square negative beside a neck.
@@ -159,7 +159,7 @@ impl Stretch {
                     lanes(|k| (square[k] * distances(self.xi, *zero, xi[k])[0]).max(0.0).sqrt());
                 [lanes(|k| middle[k] - half[k]), lanes(|k| middle[k] + half[k])]
             }
-            Curve::Root { from, edges: [low, high] } => {
+            EdgeCurve::Root { from, edges: [low, high] } => {
                 let t: Lanes<N> = lanes(|k| 2.0 * self.root(*from, xi[k]) - 1.0);
                 [low.values(&t), high.values(&t)]
             }
@@ -171,7 +171,7 @@ impl Stretch {
     pub(crate) fn edges_and_slopes<const N: usize>(&self, xi: &Lanes<N>) -> [[Lanes<N>; 2]; 2] {
         let length = self.xi.width();
         match &self.curve {
-            Curve::Width { zero, square, middle } => {
+            EdgeCurve::Width { zero, square, middle } => {
                 let t: Lanes<N> = lanes(|k| self.parameter(xi[k]));
                 let [square, growth] = square.values_and_slopes(&t);
                 let [middle, along] = middle.values_and_slopes(&t);
@@ -185,7 +185,7 @@ impl Stretch {
                 let edges = [lanes(|k| middle[k] - half[k]), lanes(|k| middle[k] + half[k])];
                 [edges, [lanes(|k| along[k] * rate - widens[k]), lanes(|k| along[k] * rate + widens[k])]]
             }
-            Curve::Root { from, edges: [low, high] } => {
+            EdgeCurve::Root { from, edges: [low, high] } => {
                 let root: Lanes<N> = lanes(|k| self.root(*from, xi[k]));
                 let toward = if *from == 0 { 1.0 } else { -1.0 };
                 let t: Lanes<N> = lanes(|k| 2.0 * root[k] - 1.0);
@@ -227,7 +227,7 @@ fn distances(Interval { low: a, high: b }: Interval, zero: [bool; 2], xi: f64) -
     }
 }
 
-impl Series {
+impl EdgeSeries {
     /// Interpolates values at the 16 points. Returns the series, and whether its last coefficients are noise, or no larger
     /// than `rounding`.
     fn new(values: &Lanes, rounding: f64) -> (Self, bool) {
@@ -274,7 +274,7 @@ mod tests {
             let both = xi.map(&mut edges);
             [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
         };
-        Fit { edges, band, zero, root, noise: 8.0 * f64::EPSILON }.add(band, &mut stretches);
+        StretchFit { edges, band, zero, root, noise: 8.0 * f64::EPSILON }.add(band, &mut stretches);
         stretches
     }
 

@@ -117,7 +117,7 @@ impl Motion {
             Pitch::Nominal => -self.speed / placement.wheel_radius(),
             Pitch::Rate(rate) => rate,
         };
-        let axes = Axes::new(placement);
+        let axes = ContactDirections::new(placement);
         let up = axes.up * placement.rolling_radius();
         let arm = axes.axle * (half + placement.wheel().point.station.x) - up;
         let slow = axes.yaw * yaw + axes.ahead * roll;
@@ -166,7 +166,7 @@ pub(crate) fn on_roller() -> Error {
 }
 
 /// Directions in the contact frame (ξ, η, ζ), all of length 1.
-struct Axes {
+struct ContactDirections {
     /// The axle, to the right.
     axle: Vector3<f64>,
     /// From C to the axle.
@@ -181,7 +181,7 @@ struct Axes {
     yaw: Vector3<f64>,
 }
 
-impl Axes {
+impl ContactDirections {
     fn new(placement: &Placement) -> Self {
         let [rail, wheel] = [placement.rail(), placement.wheel()].map(|body| body.point.station);
         // A direction of a body that varies is a column of its frame's axes.

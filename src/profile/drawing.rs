@@ -223,11 +223,11 @@ mod tests {
 
     fn complaint(segments: &str) -> std::result::Result<String, toml::de::Error> {
         #[derive(Deserialize)]
-        struct Drawn {
+        struct DrawnProfile {
             start: Option<[f64; 2]>,
             segments: Vec<SegmentData>,
         }
-        let drawn: Drawn = toml::from_str(segments)?;
+        let drawn: DrawnProfile = toml::from_str(segments)?;
         let error = drawn_profile("drawn", "", drawn.start, &drawn.segments).err();
         Ok(error.map(|e| e.to_string()).unwrap_or_default())
     }

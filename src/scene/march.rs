@@ -8,7 +8,7 @@ use super::doubts::doubts_of_keys;
 use super::profiles::{Given, Resolved, rail_of};
 use super::resolve::{echo, with_profiles};
 use super::standing::{position, rails, wheels, within};
-use super::varying::{Wheel, both_vary, list_of, loft, wheel};
+use super::varying::{WheelBody, both_vary, list_of, loft, wheel};
 use crate::case::{Case, MarchCase, Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};
 use crate::lofted::{Loft, LoftedBody, LoftedWheel, section};
@@ -32,7 +32,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
         return Err(Error::new("roller", "rollers", "rails that vary along the track", "remove [roller]"));
     }
     let (position, within) = (position(wheelset)?, within(wheelset.within)?);
-    let sides = Sides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
+    let sides = MarchSides { scene, folder, rails: rails(track)?, wheels: wheels(wheelset)? };
     let warnings = doubts_of_keys(scene).iter().map(ToString::to_string).collect();
     let mut lists = Lists { reach: Interval::ALL, warnings };
     let (own, right) = sides.side(true, &mut lists)?;
@@ -77,14 +77,14 @@ fn loaded(scene: &Scene, profiles: &Profiles) -> Result<Option<Case>> {
 }
 
 /// What both sides are made of.
-struct Sides<'a> {
+struct MarchSides<'a> {
     scene: &'a Scene,
     folder: &'a Path,
     rails: RailDistance,
     wheels: WheelDistance,
 }
 
-impl Sides<'_> {
+impl MarchSides<'_> {
     /// Makes one side, whose rail or wheel varies, or neither.
     fn side(&self, right: bool, lists: &mut Lists) -> Result<(SideProfiles, SideOnTrack)> {
         let Self { scene, folder, rails, wheels } = *self;
@@ -96,7 +96,8 @@ impl Sides<'_> {
             .map(|(body, own)| if own.is_some() { format!("{name}: {body}") } else { body.to_owned() });
         let (rail, given) = (rail.unwrap_or(&scene.rail), Given::new());
         let data = own_wheel.unwrap_or(&scene.wheel);
-        let Wheel { resolved, radius, varying } = wheel(scene, (data, &wheel_key), None, (folder, &given))?;
+        let WheelBody { resolved, radius, varying } =
+            wheel(scene, (data, &wheel_key), None, (folder, &given))?;
         lists.take_wheel(&wheel_key, (&resolved, radius), varying.as_ref());
         let axle = Wheelset::new(wheels, radius)?;
         let deviation = own.and_then(|side| side.deviation).unwrap_or_default();

@@ -9,7 +9,7 @@ use super::read::parse;
 use super::words::nearest;
 use crate::error::{Error, Result, finite, given};
 use crate::files::{read_bytes, read_text};
-use crate::measured::{self, Cut, Measured, Options, Record, SliceList, Unit};
+use crate::measured::{self, Measured, Options, Record, SectionOfList, SliceList, Unit};
 use crate::placement::Pair;
 use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 
@@ -49,7 +49,7 @@ fn in_unit(
 pub type Given = BTreeMap<String, (Option<Side>, Profile)>;
 
 /// Where the profiles of a scene come from: its folder, and those that are given.
-pub(super) type Sources<'a> = (&'a Path, &'a Given);
+pub(super) type SceneSources<'a> = (&'a Path, &'a Given);
 
 /// Joins a rail, or the roller of a scene that has one, and a wheel with its nominal rolling radius \[mm\].
 ///
@@ -73,7 +73,7 @@ pub fn profile_of(data: &ProfileData, folder: &Path, side: Side) -> Result<(Prof
 }
 
 /// Gives the profile of a rail; `place` is its key.
-pub(super) fn rail_of(data: &ProfileData, place: &str, sources: Sources<'_>) -> Result<Resolved> {
+pub(super) fn rail_of(data: &ProfileData, place: &str, sources: SceneSources<'_>) -> Result<Resolved> {
     let rail = profile(data, sources, Side::Rail).map_err(|e| e.within(place))?;
     if let Some(radius) = data.radius {
         let expected = "a radius only for the wheel";
@@ -87,7 +87,7 @@ pub(super) fn wheel_of(
     scene: &Scene,
     data: &ProfileData,
     place: &str,
-    sources: Sources<'_>,
+    sources: SceneSources<'_>,
 ) -> Result<(Resolved, f64)> {
     let wheel = profile(data, sources, Side::Wheel).map_err(|e| e.within(place))?;
     Ok((wheel, wheel_radius(scene, data, place)?))
@@ -114,7 +114,7 @@ pub fn near(place: &str, radius: f64) -> Result<f64> {
 }
 
 /// Returns a profile as the scene places it, and the record of a measured one.
-fn profile(data: &ProfileData, (folder, given_ones): Sources<'_>, side: Side) -> Result<Resolved> {
+fn profile(data: &ProfileData, (folder, given_ones): SceneSources<'_>, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
         (Some(name), None, None) => Resolved::drawn(named(name, given_ones, side)?),
         (None, Some(file), None) => in_file(data, &folder.join(file), side)?,
@@ -255,7 +255,7 @@ pub fn section_from_files(path: &Path, side: Side, options: &Options) -> Result<
     }
     let bytes = read_bytes(path, measured::LARGEST_FILE)?;
     let list = SliceList::read(&bytes, side).map_err(|error| error.within(&place))?;
-    let cut = Cut::new(&list, options).map_err(|error| error.within(&place))?;
+    let cut = SectionOfList::new(&list, options).map_err(|error| error.within(&place))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let slice = |name| Ok((name, read_bytes(&folder.join(name), measured::LARGEST_FILE)?));
     let contents: Vec<(&str, Vec<u8>)> =

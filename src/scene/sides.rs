@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::data::Scene;
 use super::profile_data::ProfileData;
-use super::profiles::{Resolved, Sources, pair_of, rail_of};
+use super::profiles::{Resolved, SceneSources, pair_of, rail_of};
 use super::side_data::SideData;
-use super::varying::{Wheel, both_vary, list_of, loft, wheel};
+use super::varying::{WheelBody, both_vary, list_of, loft, wheel};
 use crate::case::{Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftedBody, section};
@@ -19,7 +19,7 @@ use crate::profile::{Profile, Side};
 ///
 /// # Errors
 /// Anything that is wrong with a profile; the error names the key.
-pub(super) fn profiles(scene: &Scene, sources: Sources<'_>) -> Result<Profiles> {
+pub(super) fn profiles(scene: &Scene, sources: SceneSources<'_>) -> Result<Profiles> {
     let both = || of_side(scene, [&scene.rail, &scene.wheel], ["rail", "wheel"], sources);
     let own = |name: &str, side: &Option<SideData>| {
         let Some(SideData { rail, wheel, .. }) = side else { return Ok(None) };
@@ -45,14 +45,14 @@ fn of_side(
     scene: &Scene,
     data: [&ProfileData; 2],
     places: [&str; 2],
-    sources: Sources<'_>,
+    sources: SceneSources<'_>,
 ) -> Result<SideProfiles> {
     let loft = varying(scene, data[0], places[0], sources.0)?;
     let rail = match &loft {
         Some((section, _)) => Resolved { profile: section.clone(), measured: None },
         None => rail_of(data[0], places[0], sources)?,
     };
-    let Wheel { resolved, radius, varying } =
+    let WheelBody { resolved, radius, varying } =
         wheel(scene, (data[1], places[1]), Some(scene.pitch()?), sources)?;
     let varying = match (loft, varying) {
         (Some(_), Some(_)) => return Err(both_vary(places[1])),

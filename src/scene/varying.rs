@@ -7,17 +7,17 @@ use rayon::prelude::*;
 use super::data::Scene;
 use super::profile_data::ProfileData;
 use super::profiles::{
-    Resolved, Sources, is_chain_file, profile_from_file, reject_measured_keys, turned_and_shifted, wheel_of,
-    wheel_radius,
+    Resolved, SceneSources, is_chain_file, profile_from_file, reject_measured_keys, turned_and_shifted,
+    wheel_of, wheel_radius,
 };
 use crate::error::{Error, Result, in_order};
 use crate::files::read_bytes;
-use crate::lofted::{Flat, Loft, LoftedWheel, Slice};
+use crate::lofted::{Flat, Loft, LoftSlice, LoftedWheel};
 use crate::measured::{self, Measured, SliceList, listed_body};
 use crate::profile::{Profile, Side, trace};
 
 /// A wheel, which may vary around its axle.
-pub(super) struct Wheel {
+pub(super) struct WheelBody {
     /// Its profile; of a list of slices the lowest section, or any.
     pub resolved: Resolved,
     /// Nominal rolling radius \[mm\].
@@ -34,8 +34,8 @@ pub(super) fn wheel(
     scene: &Scene,
     (data, key): (&ProfileData, &str),
     pitch: Option<f64>,
-    sources: Sources<'_>,
-) -> Result<Wheel> {
+    sources: SceneSources<'_>,
+) -> Result<WheelBody> {
     if let Some(list) = list_of(data, Side::Wheel) {
         let radius = wheel_radius(scene, data, key)?;
         let within = |error: Error| error.within(key);
@@ -44,12 +44,12 @@ pub(super) fn wheel(
         let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
         profile.name = format!("{name}, {}", profile.name);
         let resolved = Resolved { profile, measured: None };
-        return Ok(Wheel { resolved, radius, varying: Some(wheel) });
+        return Ok(WheelBody { resolved, radius, varying: Some(wheel) });
     }
     let plain = ProfileData { flat: None, radii: None, ..data.clone() };
     let (resolved, radius) = wheel_of(scene, &plain, key, sources)?;
     let varying = varying(data, &resolved.profile, radius).map_err(|error| error.within(key))?;
-    Ok(Wheel { resolved, radius, varying })
+    Ok(WheelBody { resolved, radius, varying })
 }
 
 /// Makes the wheel with the flat or the radii of these keys; `None` without either.
@@ -113,14 +113,14 @@ pub fn loft(data: &ProfileData, path: &Path) -> Result<Loft> {
 }
 
 /// Reads the slices of a list of this body, and what is doubtful in it.
-fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<Slice>, Vec<String>)> {
+fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<LoftSlice>, Vec<String>)> {
     let place = path.display().to_string();
     let bytes = read_bytes(path, measured::LARGEST_FILE)?;
     let list = SliceList::read(&bytes, side).map_err(|error| error.within(&place))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let curves = list.slices.par_iter().map(|slice| {
-        let curve = Curve::read(data, &folder.join(&slice.file), side)?;
-        Ok(Curve { profile: turned_and_shifted(data, curve.profile)?, ..curve })
+        let curve = SliceCurve::read(data, &folder.join(&slice.file), side)?;
+        Ok(SliceCurve { profile: turned_and_shifted(data, curve.profile)?, ..curve })
     });
     let curves = in_order(curves).map_err(|error| error.within(&place))?;
     if let Some(k) = (1..curves.len()).find(|&k| curves[k].scale != curves[0].scale) {
@@ -144,7 +144,7 @@ fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<Slice>, Ve
     if list.approximated {
         doubts.push("the list asks for an approximating spline; the surface goes through its slices".into());
     }
-    let joined = list.slices.into_iter().zip(curves).map(|(slice, curve)| Slice {
+    let joined = list.slices.into_iter().zip(curves).map(|(slice, curve)| LoftSlice {
         at: slice.at,
         name: slice.file,
         profile: curve.profile,
@@ -155,7 +155,7 @@ fn slices(data: &ProfileData, path: &Path, side: Side) -> Result<(Vec<Slice>, Ve
 }
 
 /// The curve of a slice.
-struct Curve {
+struct SliceCurve {
     profile: Profile,
     /// Length of the polygon of measured points \[mm\].
     polygon: Option<f64>,
@@ -165,7 +165,7 @@ struct Curve {
     doubt: Option<String>,
 }
 
-impl Curve {
+impl SliceCurve {
     fn read(data: &ProfileData, path: &Path, side: Side) -> Result<Self> {
         if data.format.is_none() && is_chain_file(path) {
             reject_measured_keys(data)?;

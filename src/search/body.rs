@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::bounds::{Bounds, Reach};
-use super::element::{ArcElement, Element, ElementCurve, Stretch};
+use super::bounds::{Bounds, DerivativeBounds};
+use super::element::{ArcElement, Element, ElementCurve, PolynomialPart};
 use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::bernstein;
 use crate::profile::{Branch, BranchPoint, BranchShape, ONE_JOINT, PolynomialBranch, Section, Side, Station};
@@ -217,7 +217,7 @@ impl TreeBuilder {
     /// Cuts a polynomial until its bounds are narrow enough to be useful, and appends the parts.
     fn cut(&mut self, first: usize, count: usize, range: Interval, depth: u32) {
         let own = &self.coefficients[first..first + count];
-        let (reach, middle, [a, b]) = (Reach::of(own, range), range.middle(), range.ends());
+        let (reach, middle, [a, b]) = (DerivativeBounds::of(own, range), range.middle(), range.ends());
         if depth > 0 && reach.is_wide(range.width()) && a < middle && middle < b {
             return range.halves().into_iter().for_each(|half| self.cut(first, count, half, depth - 1));
         }
@@ -226,7 +226,7 @@ impl TreeBuilder {
             bernstein(&c, range)
         });
         let hull: Vec<[f64; 2]> = x.into_iter().zip(z).map(|(x, z)| [x, z]).collect();
-        let stretch = Stretch { first, count, reach };
+        let stretch = PolynomialPart { first, count, reach };
         let shape = ElementCurve::Stretch(stretch);
         let ends = [a, b].map(|t| stretch.place(&self.coefficients, t).station);
         let outer = ends.map(|end| [end.x, end.z]);

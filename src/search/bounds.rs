@@ -37,7 +37,7 @@ pub(super) const STEEPEST_SLOPE: f64 = 32.0;
 
 /// Bounds of the derivatives of a stretch with respect to its parameter.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reach {
+pub(super) struct DerivativeBounds {
     /// Largest |dx|.
     pub run: f64,
     /// Largest |dz|.
@@ -127,7 +127,7 @@ impl Bounds {
     }
 }
 
-impl Reach {
+impl DerivativeBounds {
     /// Returns the bounds over a range of the parameter, for a curve with coefficients \[x, z\].
     ///
     /// Method: Bernstein coefficients; the tangents lie in the cone of the control vectors. Unbounded where

@@ -2,7 +2,7 @@
 //! at kinks and ends. Each is a curve over its own parameter, which passes the vertical without a
 //! singularity.
 
-use super::bounds::{Bounds, Reach};
+use super::bounds::{Bounds, DerivativeBounds};
 use crate::numerics::cosine;
 use crate::numerics::interval::Interval;
 use crate::profile::{ArcBranch, Side, Station};
@@ -34,7 +34,7 @@ pub(super) enum ElementCurve {
     /// A line.
     Line,
     /// A part of a polynomial.
-    Stretch(Stretch),
+    Stretch(PolynomialPart),
 }
 
 /// An arc with the sine of its tangent angle as parameter.
@@ -52,13 +52,13 @@ pub(super) struct ArcElement {
 
 /// A part of a polynomial: where the body keeps its coefficients, and bounds of its derivatives.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stretch {
+pub(super) struct PolynomialPart {
     /// Index of the first coefficient.
     pub first: usize,
     /// Number of coefficients.
     pub count: usize,
     /// Bounds of the derivatives.
-    pub reach: Reach,
+    pub reach: DerivativeBounds,
 }
 
 /// A point of an element, with its derivatives with respect to the element's parameter.
@@ -200,7 +200,7 @@ pub(super) fn rising_root(ends: [f64; 2], values: Interval, value: f64, f: impl 
     p
 }
 
-impl Stretch {
+impl PolynomialPart {
     /// Returns the point at a parameter.
     #[inline]
     pub fn place(&self, coefficients: &[[f64; 2]], t: f64) -> ElementPoint {

@@ -66,7 +66,7 @@ pub(crate) use touch::small_angle;
 pub use touch::{
     Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, first_touch, wheel_rotation,
 };
-pub(crate) use wheelset::Places;
+pub(crate) use wheelset::LowestPlaces;
 pub use wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
 
 #[cfg(test)]

@@ -126,17 +126,17 @@ pub struct WheelsetTouch<'a> {
     /// Left and right side.
     pub sides: [SideTouch<'a>; 2],
     /// Where the lowest places are, for searches nearby.
-    pub(crate) places: Places,
+    pub(crate) places: LowestPlaces,
 }
 
 /// The lowest places of a first touch, from which searches nearby begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Places {
+pub(crate) struct LowestPlaces {
     roll: f64,
     meetings: [Meeting; 2],
 }
 
-impl Places {
+impl LowestPlaces {
     /// Elements of wheel and rail that meet on each side; what is found there is analytic in the position as long as they stay the same.
     pub fn elements(&self) -> [[u32; 2]; 2] {
         self.meetings.map(|meeting| meeting.elements)
@@ -169,7 +169,7 @@ const FOLLOWED: u32 = 6;
 
 /// Both sides on given places of contact at one roll; arrays are \[left, right\].
 #[derive(Debug, Clone, Copy)]
-struct Kept {
+struct KeptPlaces {
     roll: f64,
     /// Heights of the axle's middle above R over the top of rail \[mm\].
     z: [f64; 2],
@@ -180,7 +180,7 @@ struct Kept {
 /// Both sides lowered at one roll; arrays are \[left, right\].
 #[derive(Debug, Clone, Copy)]
 struct Lowered {
-    kept: Kept,
+    kept: KeptPlaces,
     attitudes: [Attitude; 2],
     /// Heights of the wheel's profile origin over the rail's \[mm\].
     heights: [f64; 2],
@@ -256,7 +256,7 @@ impl WheelsetSearch<'_> {
         &mut self,
         position: &Position,
         selection: &Selection,
-        near: Option<&Places>,
+        near: Option<&LowestPlaces>,
     ) -> Result<Option<WheelsetTouch<'_>>> {
         finite("wheelset: lateral", position.lateral)?;
         small_angle("wheelset: yaw", position.yaw)?;
@@ -277,18 +277,18 @@ impl WheelsetSearch<'_> {
             return Err(error);
         }
         let Some(Lowered { kept, heights, attitudes, meetings }) = level else { return Ok(None) };
-        let Kept { roll, z, .. } = kept;
+        let KeptPlaces { roll, z, .. } = kept;
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
             SideTouch { z: z[1], touch: right.collect(&attitudes[1], heights[1], selection) },
         ];
-        Ok(Some(WheelsetTouch { roll, sides, places: Places { roll, meetings } }))
+        Ok(Some(WheelsetTouch { roll, sides, places: LowestPlaces { roll, meetings } }))
     }
 
     /// Returns the heights of the axle's middle \[mm\], of the left and the right side, at which the wheels touch at the places of a
     /// touch nearby, whether or not others are lower; `None` where these have left their elements.
-    pub(crate) fn heights(&mut self, position: &Position, near: &Places) -> Option<[f64; 2]> {
+    pub(crate) fn heights(&mut self, position: &Position, near: &LowestPlaces) -> Option<[f64; 2]> {
         let roll = match position.roll {
             Roll::Solve => near.roll,
             Roll::Neglect => 0.0,
@@ -303,7 +303,7 @@ impl WheelsetSearch<'_> {
 
     /// Lowers both sides at the roll at which both wheels touch at the places of a touch nearby; `None` where these are not the lowest
     /// any more.
-    fn confirmed(&mut self, position: &Position, near: &Places, within: f64) -> Option<Lowered> {
+    fn confirmed(&mut self, position: &Position, near: &LowestPlaces, within: f64) -> Option<Lowered> {
         let kept = self.kept(position, near.roll, &near.meetings)?;
         let kept = self.follow(position, kept, &near.meetings).ok()?;
         let level = self.level(position, kept.roll, within)?;
@@ -399,9 +399,9 @@ impl WheelsetSearch<'_> {
     fn follow(
         &mut self,
         position: &Position,
-        mut kept: Kept,
+        mut kept: KeptPlaces,
         meetings: &[Meeting; 2],
-    ) -> std::result::Result<Kept, f64> {
+    ) -> std::result::Result<KeptPlaces, f64> {
         for _ in 0..FOLLOWED {
             let next = kept.roll - kept.difference() / kept.slope;
             if next == kept.roll {
@@ -419,7 +419,7 @@ impl WheelsetSearch<'_> {
     }
 
     /// Puts both sides on given places of contact at a roll; `None` where these have left their elements.
-    fn kept(&mut self, position: &Position, roll: f64, meetings: &[Meeting; 2]) -> Option<Kept> {
+    fn kept(&mut self, position: &Position, roll: f64, meetings: &[Meeting; 2]) -> Option<KeptPlaces> {
         let (mut z, mut slope) = ([0.0; 2], 0.0);
         for (k, meeting) in meetings.iter().enumerate() {
             let (attitude, datum) = self.system.attitude(position, roll, k);
@@ -427,7 +427,7 @@ impl WheelsetSearch<'_> {
             z[k] = datum - candidate.gap;
             slope += self.lever(position, k, z[k], &candidate);
         }
-        Some(Kept { roll, z, slope })
+        Some(KeptPlaces { roll, z, slope })
     }
 
     /// Returns the rounding of a difference of heights \[mm\].
@@ -451,7 +451,7 @@ impl WheelsetSearch<'_> {
             lowest[k] = Some(candidate.meeting);
         }
         let [left, right] = lowest;
-        Some(Lowered { kept: Kept { roll, z, slope }, attitudes, heights, meetings: [left?, right?] })
+        Some(Lowered { kept: KeptPlaces { roll, z, slope }, attitudes, heights, meetings: [left?, right?] })
     }
 
     /// Returns the part of one side in the derivative of the difference of heights with respect to the roll
@@ -481,7 +481,7 @@ impl WheelsetSearch<'_> {
     }
 }
 
-impl Kept {
+impl KeptPlaces {
     /// Returns the height of the right side less that of the left \[mm\].
     fn difference(&self) -> f64 {
         self.z[1] - self.z[0]

@@ -180,7 +180,7 @@ fn summed<'a>(
         return Box::new(OverLoft { wheel, rail, axis });
     }
     match placement.under() {
-        Some(under) => Box::new(Sum { wheel, roller: make(1, Relief::new(under)), falls: Vec::new() }),
+        Some(under) => Box::new(ReliefSum { wheel, roller: make(1, Relief::new(under)), falls: Vec::new() }),
         None => wheel,
     }
 }
@@ -213,14 +213,14 @@ impl Kernel for OverLoft<'_> {
 }
 
 /// The sum of the reliefs of a wheel and of a roller.
-struct Sum<'a> {
+struct ReliefSum<'a> {
     wheel: Box<dyn Kernel + 'a>,
     roller: Box<dyn Kernel + 'a>,
     /// Values of the roller \[mm\].
     falls: Vec<f64>,
 }
 
-impl Kernel for Sum<'_> {
+impl Kernel for ReliefSum<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         self.columns(&[xi], out);
     }

@@ -45,4 +45,4 @@ pub use lower::{LowerBody, LowerSurface};
 pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
 pub use plan::{Plan, plan};
 pub use values::Values;
-pub(crate) use wheel_surface::{Surface, sagitta};
+pub(crate) use wheel_surface::{WheelSurface, sagitta};

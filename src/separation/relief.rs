@@ -4,7 +4,7 @@ use nalgebra::{Unit, UnitComplex, Vector2, Vector3};
 
 use super::gap;
 use super::span::{SagittaPoint, Span};
-use super::wheel_surface::Surface;
+use super::wheel_surface::WheelSurface;
 use crate::lofted::FramedLoft;
 use crate::placement::Placement;
 use crate::profile::Section;
@@ -18,7 +18,7 @@ pub struct Relief<'a> {
     /// The lower body's profile in the contact frame.
     pub below: &'a Section,
     /// The surface whose height is measured.
-    pub wheel: Surface<'a>,
+    pub wheel: WheelSurface<'a>,
     /// The spans of the last column.
     pub spans: Vec<Span>,
     /// The rotation from the surface's own directions of the tangent plane to ξ and η.
@@ -55,7 +55,7 @@ impl<'a> Relief<'a> {
         Self {
             // Of a rail that varies, the height over its tangent plane is known apart.
             below: placement.lofted_rail().map_or(&placement.rail().section, FramedLoft::plane),
-            wheel: Surface::new(placement),
+            wheel: WheelSurface::new(placement),
             spans: Vec::with_capacity(4),
             skew: placement.skew_rotation(),
             versine: 2.0 * (placement.skew() / 2.0).sin().powi(2),
@@ -72,7 +72,7 @@ impl<'a> Relief<'a> {
         let [shift, eta_w] = self.wheel_coordinates(xi, eta);
         let (xi_w, u) = (xi + shift, eta_w * eta_w);
         self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = self.spans[Surface::span_at(&self.spans, u)?];
+        let span = self.spans[WheelSurface::span_at(&self.spans, u)?];
         Some(ReliefPoint { xi_w, shift, eta_w, span, point: self.wheel.point_at(xi_w, &span, u)? })
     }
 
@@ -118,7 +118,7 @@ impl<'a> Relief<'a> {
             let (mut known, mut base) = (None, f64::NAN);
             for (s, &eta) in out.iter_mut().zip(eta) {
                 let u = eta * eta;
-                let found = Surface::span_at(&spans, u);
+                let found = WheelSurface::span_at(&spans, u);
                 if found != known {
                     (known, base) = (found, found.map_or(f64::NAN, |k| self.base(xi, 0.0, &spans[k])));
                 }

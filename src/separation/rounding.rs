@@ -26,7 +26,7 @@ const STEEP: f64 = 1.0;
 /// The second is the error of the angle θ_C (the rounding of its sine over its cosine) times the distance from C. The third
 /// is the rounding of ξ and of the run to an arc's centre, times the slope.
 pub fn rounding(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
-    let bodies = [Reached::below(relief, xi), Reached::above(relief, xi, axis)];
+    let bodies = [CoveredPart::below(relief, xi), CoveredPart::above(relief, xi, axis)];
     let of_sum = OWN_ROUNDINGS[usize::from(relief.is_skewed())] * f64::EPSILON * largest;
     if bodies.iter().all(|body| body.contact) {
         return of_sum;
@@ -35,14 +35,14 @@ pub fn rounding(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis, largest: f64) -
 }
 
 /// The part of a profile over which a grid lies.
-struct Reached {
+struct CoveredPart {
     /// Whether this part is only the contact segment.
     contact: bool,
     /// Size \[mm\] of the coordinates from which heights are computed, with the slope's share.
     coordinates: f64,
 }
 
-impl Reached {
+impl CoveredPart {
     fn below(relief: &Relief<'_>, xi: &[f64]) -> Self {
         Self::new(relief.below, xi, &[0.0], |xi, _| xi)
     }

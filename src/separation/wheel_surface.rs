@@ -37,7 +37,7 @@ const FAR_END: f64 = 4.0;
 
 /// The wheel as a surface over the contact frame of its own meridian plane.
 #[derive(Debug, Clone, Copy)]
-pub struct Surface<'a> {
+pub struct WheelSurface<'a> {
     /// The wheel profile in the contact frame.
     pub section: &'a Section,
     /// Axle distance of C: R − z_C \[mm\].
@@ -46,7 +46,7 @@ pub struct Surface<'a> {
     pub(crate) sin: f64,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> WheelSurface<'a> {
     /// Makes the surface of the wheel of a placed pair.
     pub fn new(placement: &'a Placement) -> Self {
         let station = placement.wheel().section.frame;

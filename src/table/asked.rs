@@ -21,7 +21,7 @@ pub struct Asked {
     pub yaw: Interval,
     /// How the roll is found.
     pub roll: Roll,
-    /// Tolerance of lengths \[mm\]; the tolerances of other quantities follow from it: [`Quantity::tolerance`](super::Quantity::tolerance).
+    /// Tolerance of lengths \[mm\]; the tolerances of other quantities follow from it: [`TableQuantity::tolerance`](super::TableQuantity::tolerance).
     pub tolerance: f64,
     /// What presses the left and the right wheel, and E* \[N/mm²\]; `None` leaves Hertz's ellipses out.
     pub pressed: Option<([Pressed; 2], f64)>,

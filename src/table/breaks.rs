@@ -34,7 +34,7 @@ pub(super) type Break = [State; 2];
 
 /// A range of displacements under one yaw, with all breaks in it.
 #[derive(Debug, Clone)]
-pub(super) struct Row {
+pub(super) struct BreakRow {
     /// The yaw \[rad\].
     pub yaw: f64,
     /// The states at both ends.
@@ -49,10 +49,10 @@ pub(super) fn laterals(states: &Break) -> Interval {
 }
 
 /// Finds the states at both ends of a range \[mm\] under a yaw \[rad\], and all breaks in it. A range without width is one state.
-pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, range: Interval) -> Result<Row> {
+pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, range: Interval) -> Result<BreakRow> {
     if !range.has_width() {
         let state = Sampler::new(system, asked, yaw).at(range.at(0.5), 0.0)?;
-        return Ok(Row { yaw, ends: [state.clone(), state], breaks: Vec::new() });
+        return Ok(BreakRow { yaw, ends: [state.clone(), state], breaks: Vec::new() });
     }
     let steps = (range.width() / STEP).ceil().max(1.0) as usize;
     let at = |k: usize| if k == steps { range.high } else { range.at(k as f64 / steps as f64) };
@@ -78,7 +78,7 @@ pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, range: Inte
         breaks.extend(found);
     }
     let ends = begin.zip(end).map(|(begin, end)| [begin, end]).ok_or_else(no_range)?;
-    Ok(Row { yaw, ends, breaks })
+    Ok(BreakRow { yaw, ends, breaks })
 }
 
 fn no_range() -> Error {

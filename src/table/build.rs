@@ -4,7 +4,7 @@ use super::about::About;
 use super::asked::Asked;
 use super::contact_table::ContactTable;
 use super::fit::MARGIN;
-use super::quantity::{MOST, Quantity};
+use super::quantity::{MOST, TableQuantity};
 use super::region::Divider;
 use super::tree::Tree;
 use crate::error::{Error, ErrorKind, Result, finite};
@@ -22,7 +22,7 @@ const WIDEST: f64 = 200.0;
 /// Method: searches every 0.02 mm. Where the elements that touch differ, or a near miss may close in between, the step is halved until
 /// its parts are clear or narrower than [`BREAK`](super::BREAK). Between breaks every quantity is interpolated at nine Chebyshev points, on cells
 /// that are halved until eight other points agree to a quarter of the tolerance.
-/// Accuracy: [`Quantity::error`]. Cost: some 2500 searches for a drawn pair over 18 mm, 5000 for a measured one, most of which begin from
+/// Accuracy: [`TableQuantity::error`]. Cost: some 2500 searches for a drawn pair over 18 mm, 5000 for a measured one, most of which begin from
 /// one nearby; on the threads of the current rayon pool, and any number of threads gives the same bits.
 ///
 /// # Errors
@@ -32,7 +32,7 @@ pub fn build(system: &WheelsetOnTrack, asked: &Asked) -> Result<ContactTable> {
     check(system, asked)?;
     let radius = system.right().wheelset().radius;
     let pressed = asked.pressed.is_some();
-    let mut quantities = Quantity::all(asked.tolerance, radius, pressed);
+    let mut quantities = TableQuantity::all(asked.tolerance, radius, pressed);
     let branch = Divider::new(system, asked, &quantities).whole()?;
     let about = About { lateral: asked.lateral, yaw: asked.yaw, radius, tolerance: asked.tolerance };
     let mut errors = [0.0_f64; MOST];

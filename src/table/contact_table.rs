@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use super::about::About;
 use super::cell::{Beginning, COEFFICIENTS, Cell};
 use super::curve::{Curve, share};
-use super::quantity::{MOST, Quantity};
+use super::quantity::{MOST, TableQuantity};
 use super::read::{Parsed, parse};
-use super::tree::{Fork, Part, Tree};
+use super::tree::{Fork, PlanePart, Tree};
 use crate::error::{Error, Result};
 use crate::numerics::interval::Interval;
 
@@ -39,7 +39,7 @@ use crate::numerics::interval::Interval;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactTable {
     about: About,
-    quantities: Vec<Quantity>,
+    quantities: Vec<TableQuantity>,
     curves: Vec<Curve>,
     forks: Vec<Fork>,
     cells: Vec<Cell>,
@@ -59,16 +59,16 @@ impl ContactTable {
     ///
     /// # Errors
     /// Parts, curves or coefficients that do not fit each other.
-    pub(super) fn of(about: About, quantities: Vec<Quantity>, tree: Tree) -> Result<Self> {
+    pub(super) fn of(about: About, quantities: Vec<TableQuantity>, tree: Tree) -> Result<Self> {
         let wrong =
             |found: String, expected: &str| Error::new("table", found, expected, "write the table anew");
         let Tree { curves, forks, cells, coefficients: by_cell } = tree;
         if cells.is_empty() || by_cell.len() != cells.len() {
             return Err(wrong("no cell".into(), "cells over the whole range"));
         }
-        let known = |fork: usize, part: &Part| match *part {
-            Part::Fork(next) => next > fork && next < forks.len(),
-            Part::Cell(cell) => cell < cells.len(),
+        let known = |fork: usize, part: &PlanePart| match *part {
+            PlanePart::Fork(next) => next > fork && next < forks.len(),
+            PlanePart::Cell(cell) => cell < cells.len(),
         };
         for (f, fork) in forks.iter().enumerate() {
             if !fork.parts.iter().all(|part| known(f, part)) || fork.curve.is_some_and(|c| c >= curves.len())
@@ -109,7 +109,7 @@ impl ContactTable {
     }
 
     /// Returns the quantities, in the order of the values of [`ContactTable::fill`].
-    pub fn quantities(&self) -> &[Quantity] {
+    pub fn quantities(&self) -> &[TableQuantity] {
         &self.quantities
     }
 
@@ -147,11 +147,11 @@ impl ContactTable {
         if !self.about.lateral.contains(lateral) || !self.about.yaw.contains(yaw) {
             return None;
         }
-        let mut part = if self.forks.is_empty() { Part::Cell(0) } else { Part::Fork(0) };
+        let mut part = if self.forks.is_empty() { PlanePart::Cell(0) } else { PlanePart::Fork(0) };
         loop {
             match part {
-                Part::Cell(cell) => return Some(cell),
-                Part::Fork(fork) => {
+                PlanePart::Cell(cell) => return Some(cell),
+                PlanePart::Fork(fork) => {
                     let fork = &self.forks[fork];
                     let above = match fork.curve {
                         Some(curve) => lateral >= self.curves[curve].at(yaw),
@@ -225,18 +225,18 @@ impl ContactTable {
             } else {
                 &yaw[k * TOGETHER..][..lateral.len()]
             };
-            arch.dispatch(Columns { table: self, lateral, yaw, numbers, columns: &mut columns });
+            arch.dispatch(ColumnsPart { table: self, lateral, yaw, numbers, columns: &mut columns });
         });
     }
 
     /// Returns the numbers of the cells under a yaw \[rad\], in ascending order.
     fn under(&self, yaw: f64) -> Vec<usize> {
         let (mut cells, mut open) = (Vec::new(), Vec::new());
-        open.push(if self.forks.is_empty() { Part::Cell(0) } else { Part::Fork(0) });
+        open.push(if self.forks.is_empty() { PlanePart::Cell(0) } else { PlanePart::Fork(0) });
         while let Some(part) = open.pop() {
             match part {
-                Part::Cell(cell) => cells.push(cell),
-                Part::Fork(fork) => {
+                PlanePart::Cell(cell) => cells.push(cell),
+                PlanePart::Fork(fork) => {
                     let Fork { curve, yaw: at, parts: [below, above] } = self.forks[fork];
                     match curve {
                         Some(_) => open.extend([above, below]),
@@ -285,12 +285,12 @@ impl ContactTable {
 
 /// Gives the number of coefficients in a row: that of the quantities, and what is missing to whole lanes.
 #[inline(always)]
-fn stride(quantities: &[Quantity]) -> usize {
+fn stride(quantities: &[TableQuantity]) -> usize {
     quantities.len().next_multiple_of(LANES)
 }
 
 /// A part of each column. The work is compiled for each kind of machine.
-struct Columns<'p, 'c> {
+struct ColumnsPart<'p, 'c> {
     table: &'p ContactTable,
     lateral: &'p [f64],
     yaw: &'p [f64],
@@ -298,7 +298,7 @@ struct Columns<'p, 'c> {
     columns: &'p mut [&'c mut [f64]],
 }
 
-impl pulp::WithSimd for Columns<'_, '_> {
+impl pulp::WithSimd for ColumnsPart<'_, '_> {
     type Output = ();
 
     /// Goes from cell to cell: the coefficients of one over yaw, 12 kB, are then read from the nearest cache.

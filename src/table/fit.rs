@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::asked::Asked;
-use super::breaks::{Break, HOP, Row, divide, laterals};
+use super::breaks::{Break, BreakRow, HOP, divide, laterals};
 use super::cell::{BREAK, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 use super::curve::{Curve, POWERS, YAW_POWERS, between, node, share};
-use super::quantity::{MOST, Needs, Quantity, Values};
+use super::quantity::{MOST, Needs, QuantityValues, TableQuantity};
 use super::state::{Sampler, State};
 use crate::error::{Result, in_order};
 use crate::numerics::interval::Interval;
@@ -35,21 +35,21 @@ const SAMPLES: usize = 2 * COEFFICIENTS - 1;
 const LOOKED_AT: usize = 33;
 
 /// Coefficients along the displacement, of 1, t, …
-type Powers = [Values; COEFFICIENTS];
+type Powers = [QuantityValues; COEFFICIENTS];
 
 /// A cell with its polynomials.
-pub(super) struct Fitted {
+pub(super) struct FittedCell {
     pub cell: Cell,
     /// Coefficients of 1, u, … of those of 1, t, … of all quantities; one with one row, and none where nothing touches.
     pub coefficients: Vec<Powers>,
     /// Largest differences in the check.
-    pub errors: Values,
+    pub errors: QuantityValues,
 }
 
 /// What came of fitting a region.
-pub(super) enum Fit {
+pub(super) enum RegionFit {
     /// One cell will do.
-    Cell(Box<Fitted>),
+    Cell(Box<FittedCell>),
     /// Breaks were found that were not known: they have been added to the rows.
     Unseen,
     /// It has to be divided.
@@ -68,10 +68,10 @@ pub(super) enum Fit {
 pub(super) fn fit(
     system: &WheelsetOnTrack,
     asked: &Asked,
-    quantities: &[Quantity],
+    quantities: &[TableQuantity],
     curves: &[Curve; 2],
-    rows: &mut [Row],
-) -> Result<Fit> {
+    rows: &mut [BreakRow],
+) -> Result<RegionFit> {
     let begin = rows[0].ends[0].topology;
     let cell = Cell {
         yaw: Interval::new(rows[0].yaw, rows[rows.len() - 1].yaw),
@@ -80,11 +80,11 @@ pub(super) fn fit(
         lacks: begin.map_or([Lacks::Nothing; 2], |topology| topology.lacks),
     };
     if begin.is_none() {
-        let fitted = Fitted { cell, coefficients: Vec::new(), errors: [0.0; MOST] };
-        return Ok(Fit::Cell(Box::new(fitted)));
+        let fitted = FittedCell { cell, coefficients: Vec::new(), errors: [0.0; MOST] };
+        return Ok(RegionFit::Cell(Box::new(fitted)));
     }
     let width = rows.iter().map(|row| laterals(&row.ends).width()).fold(0.0, f64::max);
-    let along = |row: &mut Row| {
+    let along = |row: &mut BreakRow| {
         let mut sampler = Sampler::new(system, asked, row.yaw);
         let samples = samples(&mut sampler, &row.ends)?;
         let unseen = width > SHORTEST && add_unseen(&mut sampler, &samples, row)?;
@@ -92,7 +92,7 @@ pub(super) fn fit(
     };
     let found = in_order(rows.par_iter_mut().map(along))?;
     if found.iter().any(|(_, unseen)| *unseen) {
-        return Ok(Fit::Unseen);
+        return Ok(RegionFit::Unseen);
     }
     let mut samples: Vec<Vec<State>> = found.into_iter().map(|(samples, _)| samples).collect();
     if width <= SHORTEST {
@@ -103,15 +103,15 @@ pub(super) fn fit(
             others.for_each(|sample| sample.values = begin.values);
         }
     }
-    let (fitted, over_yaw) = Fitted::new(cell, quantities, curves, &samples, rows);
+    let (fitted, over_yaw) = FittedCell::new(cell, quantities, curves, &samples, rows);
     if width <= SHORTEST || fitted.is_fine(quantities, &samples, rows) {
-        return Ok(Fit::Cell(Box::new(fitted)));
+        return Ok(RegionFit::Cell(Box::new(fitted)));
     }
     if width <= MAY_JUMP && add_jumps(system, asked, &samples, rows)? {
-        return Ok(Fit::Unseen);
+        return Ok(RegionFit::Unseen);
     }
     let middles = samples.iter().map(|samples| samples[SAMPLES / 2].clone()).collect();
-    Ok(Fit::Coarse { over_yaw, middles })
+    Ok(RegionFit::Coarse { over_yaw, middles })
 }
 
 /// Searches at all points of a row.
@@ -129,7 +129,7 @@ fn samples(sampler: &mut Sampler<'_>, ends: &Break) -> Result<Vec<State>> {
 }
 
 /// Adds breaks to a row that the search of breaks has not seen: other elements touch at one of the samples. Tells whether there are any.
-fn add_unseen(sampler: &mut Sampler<'_>, samples: &[State], row: &mut Row) -> Result<bool> {
+fn add_unseen(sampler: &mut Sampler<'_>, samples: &[State], row: &mut BreakRow) -> Result<bool> {
     let mut breaks = Vec::new();
     for pair in samples.windows(2).filter(|pair| pair[0].topology != pair[1].topology) {
         if !is_known(&row.breaks, pair) {
@@ -148,7 +148,7 @@ fn is_known(breaks: &[Break], pair: &[State]) -> bool {
 }
 
 /// Adds breaks to a row, in order.
-fn add(row: &mut Row, breaks: Vec<Break>) {
+fn add(row: &mut BreakRow, breaks: Vec<Break>) {
     row.breaks.extend(breaks);
     row.breaks.sort_by(|a, b| a[0].lateral.total_cmp(&b[0].lateral));
 }
@@ -158,7 +158,7 @@ fn add_jumps(
     system: &WheelsetOnTrack,
     asked: &Asked,
     samples: &[Vec<State>],
-    rows: &mut [Row],
+    rows: &mut [BreakRow],
 ) -> Result<bool> {
     let mut some = false;
     for (samples, row) in samples.iter().zip(rows) {
@@ -195,16 +195,16 @@ fn jump(sampler: &mut Sampler<'_>, samples: &[State], known: &[Break]) -> Result
     Ok((from.moved(&to) > HOP).then_some([from, to]))
 }
 
-impl Fitted {
+impl FittedCell {
     /// Fits the polynomials, and tells whether those of the yaw err more than those of the displacement.
     fn new(
         cell: Cell,
-        quantities: &[Quantity],
+        quantities: &[TableQuantity],
         curves: &[Curve; 2],
         samples: &[Vec<State>],
-        rows: &[Row],
+        rows: &[BreakRow],
     ) -> (Self, bool) {
-        let node = |(samples, row): (&Vec<State>, &Row)| {
+        let node = |(samples, row): (&Vec<State>, &BreakRow)| {
             let own = laterals(&row.ends);
             stretched(&through(samples), between(curves, row.yaw).map(|y| share(own, y)))
         };
@@ -223,10 +223,10 @@ impl Fitted {
     /// the other.
     fn compare(
         &mut self,
-        quantities: &[Quantity],
+        quantities: &[TableQuantity],
         curves: &[Curve; 2],
         samples: &[Vec<State>],
-        rows: &[Row],
+        rows: &[BreakRow],
     ) -> [f64; 2] {
         let most = 1.0 + MOST_STRETCHED;
         let mut shares = [0.0_f64; 2];
@@ -263,7 +263,7 @@ impl Fitted {
     }
 
     /// Tells whether every quantity is within its tolerance, and monotone in every row where its samples are.
-    fn is_fine(&self, quantities: &[Quantity], samples: &[Vec<State>], rows: &[Row]) -> bool {
+    fn is_fine(&self, quantities: &[TableQuantity], samples: &[Vec<State>], rows: &[BreakRow]) -> bool {
         let accurate = quantities
             .iter()
             .zip(self.errors)
@@ -272,9 +272,9 @@ impl Fitted {
         accurate && each.all(|(samples, row)| self.is_monotone(quantities, samples, row.yaw))
     }
 
-    fn is_monotone(&self, quantities: &[Quantity], samples: &[State], yaw: f64) -> bool {
+    fn is_monotone(&self, quantities: &[TableQuantity], samples: &[State], yaw: f64) -> bool {
         let powers = self.along(yaw);
-        let looks: Vec<Values> = (0..LOOKED_AT).map(|k| at(&powers, node(k, LOOKED_AT))).collect();
+        let looks: Vec<QuantityValues> = (0..LOOKED_AT).map(|k| at(&powers, node(k, LOOKED_AT))).collect();
         quantities.iter().enumerate().filter(|(_, quantity)| exists(&self.cell, quantity)).all(
             |(q, quantity)| {
                 [1.0, -1.0].into_iter().all(|sign| {
@@ -334,7 +334,7 @@ fn over_yaw(nodes: &[Powers]) -> Vec<Powers> {
     (0..YAW_COEFFICIENTS).map(of).collect()
 }
 
-fn at([lower @ .., highest]: &Powers, t: f64) -> Values {
+fn at([lower @ .., highest]: &Powers, t: f64) -> QuantityValues {
     let mut values = *highest;
     for row in lower.iter().rev() {
         values.iter_mut().zip(row).for_each(|(value, c)| *value = *value * t + c);
@@ -343,7 +343,7 @@ fn at([lower @ .., highest]: &Powers, t: f64) -> Values {
 }
 
 /// Tells whether a quantity exists over a cell.
-pub(super) fn exists(cell: &Cell, quantity: &Quantity) -> bool {
+pub(super) fn exists(cell: &Cell, quantity: &TableQuantity) -> bool {
     let lacks = quantity.right.map_or(Lacks::Nothing, |right| cell.lacks[usize::from(right)]);
     cell.touches && quantity.needs.code() + lacks.code() <= 2
 }

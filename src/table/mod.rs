@@ -25,5 +25,5 @@ pub use build::build;
 pub use cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 pub use contact_table::ContactTable;
 pub use curve::Curve;
-pub use quantity::{Needs, Quantity, TOLERANCE_LENGTH};
-pub use tree::{Fork, Part};
+pub use quantity::{Needs, TOLERANCE_LENGTH, TableQuantity};
+pub use tree::{Fork, PlanePart};

@@ -44,7 +44,7 @@ impl Needs {
 
 /// What a quantity is measured in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Unit {
+enum QuantityUnit {
     Length,
     Angle,
     Curvature,
@@ -54,7 +54,7 @@ enum Unit {
 
 /// A quantity of a table: of the wheelset, or of one side in its own profile axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Quantity {
+pub struct TableQuantity {
     /// Its name, with the unit; that of the sweep's column where it has one.
     pub name: &'static str,
     /// Whether it is of the right-hand side; `None` of the wheelset.
@@ -69,36 +69,36 @@ pub struct Quantity {
 }
 
 /// A quantity of each side: its name, what it is measured in, what it needs, and which value it is.
-struct OfSide(&'static str, Unit, Needs, fn(&SideValues) -> f64);
+struct OfSide(&'static str, QuantityUnit, Needs, fn(&SideValues) -> f64);
 
 /// The quantity of the wheelset.
 const ROLL: &str = "roll_rad";
 
 /// The quantities of each side.
 const SIDE: [OfSide; 14] = [
-    OfSide("z_mm", Unit::Length, Needs::Contact, |side| side.z),
-    OfSide("rail_x_mm", Unit::Length, Needs::Contact, |side| side.contact.rail_x),
-    OfSide("wheel_x_mm", Unit::Length, Needs::Contact, |side| side.contact.wheel_x),
-    OfSide("y_mm", Unit::Length, Needs::Contact, |side| side.contact.y),
-    OfSide("contact_angle_rad", Unit::Angle, Needs::Contact, |side| side.contact.contact_angle),
-    OfSide("rolling_radius_mm", Unit::Length, Needs::Contact, |side| side.contact.rolling_radius),
-    OfSide("skew_rad", Unit::Angle, Needs::Contact, |side| side.contact.skew),
-    OfSide("a_xi_per_mm", Unit::Curvature, Needs::Curvatures, |side| side.form[0]),
-    OfSide("b_eta_per_mm", Unit::Curvature, Needs::Curvatures, |side| side.form[2]),
-    OfSide("c_xi_eta_per_mm", Unit::Curvature, Needs::Curvatures, |side| side.form[1]),
-    OfSide("hertz_xi_mm", Unit::Length, Needs::Ellipse, |side| side.ellipse[0]),
-    OfSide("hertz_eta_mm", Unit::Length, Needs::Ellipse, |side| side.ellipse[1]),
-    OfSide("hertz_approach_mm", Unit::Approach, Needs::Ellipse, |side| side.ellipse[2]),
-    OfSide("hertz_p_n_per_mm2", Unit::Pressure, Needs::Ellipse, |side| side.ellipse[3]),
+    OfSide("z_mm", QuantityUnit::Length, Needs::Contact, |side| side.z),
+    OfSide("rail_x_mm", QuantityUnit::Length, Needs::Contact, |side| side.contact.rail_x),
+    OfSide("wheel_x_mm", QuantityUnit::Length, Needs::Contact, |side| side.contact.wheel_x),
+    OfSide("y_mm", QuantityUnit::Length, Needs::Contact, |side| side.contact.y),
+    OfSide("contact_angle_rad", QuantityUnit::Angle, Needs::Contact, |side| side.contact.contact_angle),
+    OfSide("rolling_radius_mm", QuantityUnit::Length, Needs::Contact, |side| side.contact.rolling_radius),
+    OfSide("skew_rad", QuantityUnit::Angle, Needs::Contact, |side| side.contact.skew),
+    OfSide("a_xi_per_mm", QuantityUnit::Curvature, Needs::Curvatures, |side| side.form[0]),
+    OfSide("b_eta_per_mm", QuantityUnit::Curvature, Needs::Curvatures, |side| side.form[2]),
+    OfSide("c_xi_eta_per_mm", QuantityUnit::Curvature, Needs::Curvatures, |side| side.form[1]),
+    OfSide("hertz_xi_mm", QuantityUnit::Length, Needs::Ellipse, |side| side.ellipse[0]),
+    OfSide("hertz_eta_mm", QuantityUnit::Length, Needs::Ellipse, |side| side.ellipse[1]),
+    OfSide("hertz_approach_mm", QuantityUnit::Approach, Needs::Ellipse, |side| side.ellipse[2]),
+    OfSide("hertz_p_n_per_mm2", QuantityUnit::Pressure, Needs::Ellipse, |side| side.ellipse[3]),
 ];
 
 /// The most quantities of a table.
 pub(super) const MOST: usize = 1 + 2 * SIDE.len();
 
 /// Values of the quantities, in their order.
-pub(super) type Values = [f64; MOST];
+pub(super) type QuantityValues = [f64; MOST];
 
-impl Unit {
+impl QuantityUnit {
     /// The tolerance of what is measured in it, from that of lengths and the nominal rolling radius \[mm\].
     fn tolerance(self, length: f64, radius: f64) -> f64 {
         match self {
@@ -111,15 +111,15 @@ impl Unit {
     }
 }
 
-impl Quantity {
+impl TableQuantity {
     /// Lists the quantities of a table, with tolerances from that of lengths and the nominal rolling radius \[mm\]; those of Hertz's ellipse
     /// only where something presses.
     pub(super) fn all(tolerance: f64, radius: f64, pressed: bool) -> Vec<Self> {
-        let of = |name, right, unit: Unit, needs| {
+        let of = |name, right, unit: QuantityUnit, needs| {
             let tolerance = unit.tolerance(tolerance, radius);
             Self { name, right, needs, tolerance, error: LEAST_ERROR * tolerance }
         };
-        let mut all = vec![of(ROLL, None, Unit::Angle, Needs::Contact)];
+        let mut all = vec![of(ROLL, None, QuantityUnit::Angle, Needs::Contact)];
         for right in [false, true] {
             let asked = |OfSide(.., needs, _): &&OfSide| pressed || *needs != Needs::Ellipse;
             let side = SIDE.iter().filter(asked);
@@ -146,7 +146,7 @@ impl Quantity {
 }
 
 /// Puts the values of the wheelset and both sides into the order of the quantities.
-pub(super) fn values(roll: f64, sides: &[SideValues; 2], pressed: bool) -> Values {
+pub(super) fn values(roll: f64, sides: &[SideValues; 2], pressed: bool) -> QuantityValues {
     let mut out = [0.0; MOST];
     let asked = |OfSide(.., needs, _): &&OfSide| pressed || *needs != Needs::Ellipse;
     let of_sides = sides.iter().flat_map(|side| SIDE.iter().filter(asked).map(|OfSide(.., of)| of(side)));

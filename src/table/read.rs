@@ -6,8 +6,8 @@ use super::about::About;
 use super::cell::{Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 use super::curve::Curve;
 use super::fit::exists;
-use super::quantity::{MOST, Quantity, Values};
-use super::tree::{Fork, Part, Tree};
+use super::quantity::{MOST, QuantityValues, TableQuantity};
+use super::tree::{Fork, PlanePart, Tree};
 use crate::error::{Error, ErrorKind, Result};
 use crate::numerics::interval::Interval;
 
@@ -18,7 +18,7 @@ const WIDTH: usize = 25;
 const MOST_CELLS: usize = 1_000_000;
 
 /// The lines of a table, with the number of the next one.
-struct Deck<'a> {
+struct TableLines<'a> {
     lines: Lines<'a>,
     number: usize,
 }
@@ -26,7 +26,7 @@ struct Deck<'a> {
 /// What a table is made of.
 pub(super) struct Parsed {
     pub about: About,
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<TableQuantity>,
     pub tree: Tree,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Parsed {
 /// # Errors
 /// Another grammar or version, with the line; a file that was cut off; more than a million cells.
 pub(super) fn parse(text: &str) -> Result<Parsed> {
-    let mut deck = Deck { lines: text.lines(), number: 0 };
+    let mut deck = TableLines { lines: text.lines(), number: 0 };
     let head = deck.line()?;
     let over_yaw = match head.trim_end() {
         "WRTABLE    1 mm" => false,
@@ -85,7 +85,7 @@ pub(super) fn parse(text: &str) -> Result<Parsed> {
     Ok(Parsed { about, quantities, tree })
 }
 
-impl<'a> Deck<'a> {
+impl<'a> TableLines<'a> {
     fn line(&mut self) -> Result<&'a str> {
         self.number += 1;
         self.lines.next().ok_or_else(|| self.wrong("the end of the file", "a line; the file was cut off"))
@@ -125,7 +125,7 @@ impl<'a> Deck<'a> {
         Ok(out)
     }
 
-    fn quantity(&mut self) -> Result<Quantity> {
+    fn quantity(&mut self) -> Result<TableQuantity> {
         let line = self.line()?;
         let field = |from: usize, to: usize| line.get(from..to).map(str::trim).unwrap_or_default();
         let right = match field(21, 29) {
@@ -135,12 +135,12 @@ impl<'a> Deck<'a> {
             _ => return Err(self.wrong(line, "wheelset, left or right in columns 22 to 29")),
         };
         let numbers = self.of_line::<2>(line, 29)?;
-        Quantity::named(field(0, 18), right, numbers)
+        TableQuantity::named(field(0, 18), right, numbers)
             .ok_or_else(|| self.wrong(line, "a quantity of this version of wheelrail"))
     }
 
     /// Reads the cells of a table under one yaw, in ascending order over the whole range.
-    fn row_of_cells(&mut self, count: usize, about: About, quantities: &[Quantity]) -> Result<Tree> {
+    fn row_of_cells(&mut self, count: usize, about: About, quantities: &[TableQuantity]) -> Result<Tree> {
         let (mut cells, mut all) = (Vec::new(), Vec::new());
         let mut before = about.lateral.low;
         for c in 0..count {
@@ -159,7 +159,7 @@ impl<'a> Deck<'a> {
     }
 
     /// Reads the curves, forks and cells of a table over yaw.
-    fn tree(&mut self, [cells, curves, forks]: [usize; 3], quantities: &[Quantity]) -> Result<Tree> {
+    fn tree(&mut self, [cells, curves, forks]: [usize; 3], quantities: &[TableQuantity]) -> Result<Tree> {
         let mut tree = Tree::default();
         for _ in 0..curves {
             let line = self.line()?;
@@ -177,9 +177,9 @@ impl<'a> Deck<'a> {
             let [below, above, curve] = self.signed::<3>(line, 0)?;
             let [yaw] = self.of_line::<1>(line, 24)?;
             let part = |code: i64| match code {
-                1.. => Some(Part::Fork(code as usize - 1)),
+                1.. => Some(PlanePart::Fork(code as usize - 1)),
                 0 => None,
-                _ => Some(Part::Cell(code.unsigned_abs() as usize - 1)),
+                _ => Some(PlanePart::Cell(code.unsigned_abs() as usize - 1)),
             };
             let (Some(below), Some(above), 0..) = (part(below), part(above), curve) else {
                 return Err(self.wrong(line, "two parts, and a curve or 0"));
@@ -224,7 +224,12 @@ impl<'a> Deck<'a> {
     }
 
     /// Reads the coefficients of a cell, in the order of the table.
-    fn coefficients(&mut self, cell: &Cell, quantities: &[Quantity], powers: usize) -> Result<Vec<Values>> {
+    fn coefficients(
+        &mut self,
+        cell: &Cell,
+        quantities: &[TableQuantity],
+        powers: usize,
+    ) -> Result<Vec<QuantityValues>> {
         if !cell.touches {
             return Ok(Vec::new());
         }

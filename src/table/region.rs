@@ -9,11 +9,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::asked::Asked;
-use super::breaks::{Break, Row, kind_of, laterals, row};
+use super::breaks::{Break, BreakRow, kind_of, laterals, row};
 use super::cell::{Beginning, INSIDE, YAW_COEFFICIENTS};
 use super::curve::{Curve, between, node};
-use super::fit::{Fit, Fitted, fit};
-use super::quantity::Quantity;
+use super::fit::{FittedCell, RegionFit, fit};
+use super::quantity::TableQuantity;
 use super::state::{Sampler, SideTopology, State};
 use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::numerics::interval::Interval;
@@ -47,31 +47,31 @@ const MOST_CELLS: usize = 15_000;
 type Change = [Option<[Option<SideTopology>; 2]>; 2];
 
 /// A curve that divides a region, with its breaks in all rows.
-type Cut = (Vec<Break>, Curve);
+type DividingCurve = (Vec<Break>, Curve);
 
 /// A region, and what is known of it.
 struct Region {
     /// Where it begins and ends.
     curves: [Curve; 2],
     /// Ascending; one or [`ROWS`].
-    rows: Vec<Row>,
+    rows: Vec<BreakRow>,
     /// Changes that are curves whatever jumps there.
     strong: Vec<Change>,
 }
 
 /// A divided region.
-pub(super) enum Branch {
+pub(super) enum Division {
     /// A cell.
-    Cell(Box<Fitted>),
+    Cell(Box<FittedCell>),
     /// Parts one after the other along the displacement, and the curves between them.
-    Along(Vec<Branch>, Vec<Curve>),
+    Along(Vec<Division>, Vec<Curve>),
     /// Parts below and above a yaw \[rad\].
-    Yaw(f64, Box<[Branch; 2]>),
+    Yaw(f64, Box<[Division; 2]>),
 }
 
-impl Branch {
+impl Division {
     /// Lists the cells in order.
-    pub fn cells(&self) -> Vec<&Fitted> {
+    pub fn cells(&self) -> Vec<&FittedCell> {
         match self {
             Self::Cell(cell) => vec![cell],
             Self::Along(parts, _) => parts.iter().flat_map(Self::cells).collect(),
@@ -84,12 +84,12 @@ impl Branch {
 pub(super) struct Divider<'a> {
     system: &'a WheelsetOnTrack,
     asked: &'a Asked,
-    quantities: &'a [Quantity],
+    quantities: &'a [TableQuantity],
     made: AtomicUsize,
 }
 
 impl<'a> Divider<'a> {
-    pub fn new(system: &'a WheelsetOnTrack, asked: &'a Asked, quantities: &'a [Quantity]) -> Self {
+    pub fn new(system: &'a WheelsetOnTrack, asked: &'a Asked, quantities: &'a [TableQuantity]) -> Self {
         Self { system, asked, quantities, made: AtomicUsize::new(0) }
     }
 
@@ -97,7 +97,7 @@ impl<'a> Divider<'a> {
     ///
     /// # Errors
     /// The errors of the search; more than [`MOST_CELLS`] over a range of yaws.
-    pub fn whole(&self) -> Result<Branch> {
+    pub fn whole(&self) -> Result<Division> {
         let Asked { lateral, yaw, .. } = *self.asked;
         let curves = lateral.ends().map(|y| Curve::constant(y, yaw, Beginning::Edge));
         let rows = self.rows(&curves, yaw, [None, None], 0.0)?;
@@ -109,9 +109,9 @@ impl<'a> Divider<'a> {
         &self,
         curves: &[Curve; 2],
         yaws: Interval,
-        known: [Option<Row>; 2],
+        known: [Option<BreakRow>; 2],
         inside: f64,
-    ) -> Result<Vec<Row>> {
+    ) -> Result<Vec<BreakRow>> {
         let at = |yaw: f64| self.row_between(curves, yaw, inside, Interval::ALL);
         if yaws.width() <= NARROWEST {
             return Ok(vec![at(yaws.at(0.5))?]);
@@ -126,7 +126,7 @@ impl<'a> Divider<'a> {
         in_order((0..ROWS).into_par_iter().map(|k| known(k).map_or_else(|| at(yaw(k)), Ok)))
     }
 
-    fn divide(&self, mut region: Region) -> Result<Branch> {
+    fn divide(&self, mut region: Region) -> Result<Division> {
         loop {
             region.strengthen(self.quantities);
             let lists = region.lists(self.quantities);
@@ -139,26 +139,26 @@ impl<'a> Divider<'a> {
                 return self.at_yaw(region, [middle.clone(), middle]);
             }
             match fit(self.system, self.asked, self.quantities, &region.curves, &mut region.rows)? {
-                Fit::Cell(cell) => {
+                RegionFit::Cell(cell) => {
                     let made = self.made.fetch_add(1, Ordering::Relaxed);
                     if made > MOST_CELLS && region.rows.len() > 1 {
                         return Err(too_many());
                     }
-                    return Ok(Branch::Cell(cell));
+                    return Ok(Division::Cell(cell));
                 }
-                Fit::Unseen => {}
-                Fit::Coarse { .. } if region.promote() => {}
-                Fit::Coarse { over_yaw: true, .. } => {
+                RegionFit::Unseen => {}
+                RegionFit::Coarse { .. } if region.promote() => {}
+                RegionFit::Coarse { over_yaw: true, .. } => {
                     let middle = region.rows[ROWS / 2].clone();
                     return self.at_yaw(region, [middle.clone(), middle]);
                 }
-                Fit::Coarse { middles, .. } => return self.in_halves(region, middles),
+                RegionFit::Coarse { middles, .. } => return self.in_halves(region, middles),
             }
         }
     }
 
     /// Divides a region at curves that all its rows have, otherwise beside its breaks, otherwise at a yaw.
-    fn along_curves(&self, region: Region, lists: &[Vec<usize>]) -> Result<Branch> {
+    fn along_curves(&self, region: Region, lists: &[Vec<usize>]) -> Result<Division> {
         let mut cuts = region.accurate(region.in_order(lists));
         if cuts.is_empty() {
             cuts = region.accurate(region.common(lists));
@@ -173,13 +173,13 @@ impl<'a> Divider<'a> {
         let (breaks, curves): (Vec<_>, Vec<_>) = cuts.into_iter().unzip();
         let parts = region.cut(&breaks, &curves);
         let parts = in_order(parts.into_par_iter().map(|part| self.divide(part)))?;
-        Ok(Branch::Along(parts, curves))
+        Ok(Division::Along(parts, curves))
     }
 
     /// Finds displacements that cut off what is wider than [`WIDE`] without breaks in any row: what happens to breaks then divides no more
     /// than their surroundings.
-    fn beside(&self, region: &Region, lists: &[Vec<usize>]) -> Result<Vec<Cut>> {
-        let of_row = |(row, list): (&Row, &Vec<usize>)| -> Vec<f64> {
+    fn beside(&self, region: &Region, lists: &[Vec<usize>]) -> Result<Vec<DividingCurve>> {
+        let of_row = |(row, list): (&BreakRow, &Vec<usize>)| -> Vec<f64> {
             list.iter().map(|&b| row.breaks[b][0].lateral).collect()
         };
         let mut places: Vec<f64> = region.rows.iter().zip(lists).flat_map(of_row).collect();
@@ -189,8 +189,8 @@ impl<'a> Divider<'a> {
         let bounds = [&[common.low - BESIDE], places.as_slice(), &[common.high + BESIDE]].concat();
         let wide = bounds.windows(2).filter(|pair| pair[1] - pair[0] > WIDE);
         let at = wide.flat_map(|pair| [pair[0] + BESIDE, pair[1] - BESIDE]);
-        let cut = |y: f64| -> Result<Cut> {
-            let search = |row: &Row| -> Result<Break> {
+        let cut = |y: f64| -> Result<DividingCurve> {
+            let search = |row: &BreakRow| -> Result<Break> {
                 let state = Sampler::new(self.system, self.asked, row.yaw).at(y, 0.0)?;
                 Ok([state.clone(), state])
             };
@@ -201,36 +201,36 @@ impl<'a> Divider<'a> {
     }
 
     /// Divides a region at a yaw: `ends` are the last row below and the first one above.
-    fn at_yaw(&self, region: Region, ends: [Row; 2]) -> Result<Branch> {
+    fn at_yaw(&self, region: Region, ends: [BreakRow; 2]) -> Result<Division> {
         let Region { curves, mut rows, strong } = region;
         let (Some(first), Some(last)) = (rows.first().cloned(), rows.pop()) else { return Err(too_many()) };
         let [below, above] = ends;
         let at = below.yaw + (above.yaw - below.yaw) / 2.0;
-        let part = |ends: [Row; 2]| {
+        let part = |ends: [BreakRow; 2]| {
             let yaws = ends.each_ref().map(|row| row.yaw).into();
             let rows = self.rows(&curves, yaws, ends.map(Some), INSIDE)?;
             self.divide(Region { curves, rows, strong: strong.clone() })
         };
         let (low, high) = rayon::join(|| part([first, below]), || part([above, last]));
-        Ok(Branch::Yaw(at, Box::new([low?, high?])))
+        Ok(Division::Yaw(at, Box::new([low?, high?])))
     }
 
     /// Divides a region half way between its curves; `middles` are the states there.
-    fn in_halves(&self, region: Region, middles: Vec<State>) -> Result<Branch> {
+    fn in_halves(&self, region: Region, middles: Vec<State>) -> Result<Division> {
         let yaw = region.yaw();
-        let at = |row: &Row| between(&region.curves, row.yaw).middle();
+        let at = |row: &BreakRow| between(&region.curves, row.yaw).middle();
         let nodes: Vec<f64> = region.rows.iter().step_by(2).map(at).collect();
         let curve = Curve::through(&nodes, yaw, Beginning::Smooth);
         let breaks: Vec<Break> = middles.into_iter().map(|state| [state.clone(), state]).collect();
         let mut parts = region.cut(&[breaks], &[curve]).into_iter();
         let (Some(low), Some(high)) = (parts.next(), parts.next()) else { return Err(too_many()) };
         let (low, high) = rayon::join(|| self.divide(low), || self.divide(high));
-        Ok(Branch::Along(vec![low?, high?], vec![curve]))
+        Ok(Division::Along(vec![low?, high?], vec![curve]))
     }
 
     /// Finds two rows, as close as [`CROSSING`], between which the changes become others, as near to the middle as there are such; the middle
     /// row twice where they are the same in all rows.
-    fn crossing(&self, region: &Region, lists: &[Vec<usize>]) -> Result<[Row; 2]> {
+    fn crossing(&self, region: &Region, lists: &[Vec<usize>]) -> Result<[BreakRow; 2]> {
         let marks = |k: usize| marks_of(&region.rows[k], &lists[k]);
         let differ = |k: &usize| !changes(&marks(k - 1)).eq(changes(&marks(*k)));
         let from_middle = |k: &usize| (2 * k - 1).abs_diff(lists.len() - 1);
@@ -257,26 +257,26 @@ impl<'a> Divider<'a> {
     }
 
     /// Looks at a row between two curves, so far inside them, and between two displacements \[mm\].
-    fn row_between(&self, curves: &[Curve; 2], yaw: f64, inside: f64, range: Interval) -> Result<Row> {
+    fn row_between(&self, curves: &[Curve; 2], yaw: f64, inside: f64, range: Interval) -> Result<BreakRow> {
         let all = between(curves, yaw);
         row(self.system, self.asked, yaw, all.grown(-inside.min(all.width() / 2.0)).cut(range))
     }
 }
 
 /// A break: what changes there, and between which displacements \[mm\].
-type Mark = (Change, Interval);
+type BreakMark = (Change, Interval);
 
 /// Gives what changes at breaks.
-fn changes(marks: &[Mark]) -> impl Iterator<Item = Change> {
+fn changes(marks: &[BreakMark]) -> impl Iterator<Item = Change> {
     marks.iter().map(|mark| mark.0)
 }
 
 /// Narrows a range of displacements \[mm\] to where two rows change otherwise, and leaves out the breaks outside.
-fn narrowed(sides: &mut [Vec<Mark>; 2], range: Interval) -> Interval {
+fn narrowed(sides: &mut [Vec<BreakMark>; 2], range: Interval) -> Interval {
     let low = alike_until(sides).unwrap_or(f64::NEG_INFINITY);
     let behind = alike_until(&sides.each_ref().map(|marks| mirrored(marks)));
     let narrow = Interval::new(low, behind.map_or(f64::INFINITY, |place| -place)).cut(range);
-    let within = |mark: &&Mark| mark.1.low > narrow.low && mark.1.high < narrow.high;
+    let within = |mark: &&BreakMark| mark.1.low > narrow.low && mark.1.high < narrow.high;
     let inner = sides.each_ref().map(|marks| marks.iter().filter(within).copied().collect::<Vec<_>>());
     if !narrow.has_width() || changes(&inner[0]).eq(changes(&inner[1])) {
         return range;
@@ -286,18 +286,18 @@ fn narrowed(sides: &mut [Vec<Mark>; 2], range: Interval) -> Interval {
 }
 
 /// Gives the breaks of a row with these numbers.
-fn marks_of(row: &Row, list: &[usize]) -> Vec<Mark> {
+fn marks_of(row: &BreakRow, list: &[usize]) -> Vec<BreakMark> {
     list.iter().map(|&b| &row.breaks[b]).map(|b| (change(b), laterals(b))).collect()
 }
 
 /// Turns the order of breaks round.
-fn mirrored(marks: &[Mark]) -> Vec<Mark> {
+fn mirrored(marks: &[BreakMark]) -> Vec<BreakMark> {
     marks.iter().rev().map(|&(change, place)| (change, -place)).collect()
 }
 
 /// Returns a displacement \[mm\] up to which two rows have the same changes, which are all before it in both, and all others behind it;
 /// `None` where there is none behind the first break.
-fn alike_until([low, high]: &[Vec<Mark>; 2]) -> Option<f64> {
+fn alike_until([low, high]: &[Vec<BreakMark>; 2]) -> Option<f64> {
     let same = low.iter().zip(high).take_while(|(a, b)| a.0 == b.0).count();
     (1..=same).rev().find_map(|p| {
         let before = low[p - 1].1.high.max(high[p - 1].1.high);
@@ -322,7 +322,7 @@ fn change([before, after]: &Break) -> Change {
 }
 
 /// Tells whether a quantity jumps at a break by more than a cell may hide.
-fn jumps([before, after]: &Break, quantities: &[Quantity]) -> bool {
+fn jumps([before, after]: &Break, quantities: &[TableQuantity]) -> bool {
     let pairs = before.values.iter().zip(&after.values).zip(quantities);
     before.topology.is_some() != after.topology.is_some()
         || pairs
@@ -331,7 +331,7 @@ fn jumps([before, after]: &Break, quantities: &[Quantity]) -> bool {
 }
 
 /// Lists the numbers of the breaks of a row that are curves.
-fn list(row: &Row, strong: &[Change], quantities: &[Quantity]) -> Vec<usize> {
+fn list(row: &BreakRow, strong: &[Change], quantities: &[TableQuantity]) -> Vec<usize> {
     let is = |b: &Break| strong.contains(&change(b)) || jumps(b, quantities);
     (0..row.breaks.len()).filter(|&b| is(&row.breaks[b])).collect()
 }
@@ -342,7 +342,7 @@ impl Region {
     }
 
     /// Adds the changes that jump in any row: they are curves in all.
-    fn strengthen(&mut self, quantities: &[Quantity]) {
+    fn strengthen(&mut self, quantities: &[TableQuantity]) {
         let breaks = self.rows.iter().flat_map(|row| &row.breaks);
         let found: Vec<Change> = breaks.filter(|b| jumps(b, quantities)).map(change).collect();
         self.add(found);
@@ -364,7 +364,7 @@ impl Region {
         }
     }
 
-    fn lists(&self, quantities: &[Quantity]) -> Vec<Vec<usize>> {
+    fn lists(&self, quantities: &[TableQuantity]) -> Vec<Vec<usize>> {
         self.rows.iter().map(|row| list(row, &self.strong, quantities)).collect()
     }
 
@@ -415,13 +415,13 @@ impl Region {
     }
 
     /// Fits curves through breaks of all rows, and gives those that err by no more than [`NEAR`], in ascending order.
-    fn accurate(&self, all: Vec<Vec<Break>>) -> Vec<Cut> {
+    fn accurate(&self, all: Vec<Vec<Break>>) -> Vec<DividingCurve> {
         let mut last = self.curves[0];
         let mut cuts = Vec::new();
         for breaks in all {
             let (curve, error) = self.curve(&breaks);
             // At the yaw of a crossing curves may cross by what they err.
-            let ordered = |row: &Row| last.at(row.yaw) <= curve.at(row.yaw) + 2.0 * NEAR;
+            let ordered = |row: &BreakRow| last.at(row.yaw) <= curve.at(row.yaw) + 2.0 * NEAR;
             if error <= NEAR && self.rows.iter().all(ordered) {
                 last = curve;
                 cuts.push((breaks, curve));
@@ -449,7 +449,7 @@ impl Region {
                 let end = if k == curves.len() { &row.ends[1] } else { &breaks[k][r][0] };
                 let inside = |b: &&Break| b[0].lateral >= begin.lateral && b[1].lateral <= end.lateral;
                 let breaks = row.breaks.iter().filter(inside).cloned().collect();
-                Row { yaw: row.yaw, ends: [begin.clone(), end.clone()], breaks }
+                BreakRow { yaw: row.yaw, ends: [begin.clone(), end.clone()], breaks }
             });
             Self { curves: [bounds[k], bounds[k + 1]], rows: rows.collect(), strong: self.strong.clone() }
         };

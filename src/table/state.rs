@@ -4,11 +4,11 @@ use std::f64::consts::FRAC_PI_4;
 
 use super::asked::{Asked, Pressed};
 use super::cell::{BREAK, Lacks};
-use super::quantity::{MOST, SideValues, Values, values};
+use super::quantity::{MOST, QuantityValues, SideValues, values};
 use crate::error::Result;
 use crate::load::{curvatures_at, quadratic_form_at};
 use crate::numerics::interval::Interval;
-use crate::search::{Contact, Places, Position, Selection, WheelsetOnTrack, WheelsetSearch};
+use crate::search::{Contact, LowestPlaces, Position, Selection, WheelsetOnTrack, WheelsetSearch};
 
 /// Distance \[mm\] below which two places are one.
 const APART: f64 = 1e-3;
@@ -50,11 +50,11 @@ pub(super) struct State {
     pub lateral: f64,
     /// `None` where a wheel is off its rail.
     pub topology: Option<Topology>,
-    pub values: Values,
+    pub values: QuantityValues,
     /// Abscissae \[mm\] of the places of contact on both rails and wheels.
     places: [f64; 4],
     /// The lowest places, from which searches nearby begin.
-    lowest: Option<Places>,
+    lowest: Option<LowestPlaces>,
     near: Vec<NearMiss>,
     /// Slopes of both places of contact in track axes.
     slopes: [f64; 2],
@@ -120,7 +120,7 @@ impl<'a> Sampler<'a> {
         Some(Interval::new(low, high).grown(BREAK / 4.0).cut(Interval::new(from.lateral, to.lateral)))
     }
 
-    fn touch(&mut self, lateral: f64, within: f64, near: Option<&Places>) -> Result<State> {
+    fn touch(&mut self, lateral: f64, within: f64, near: Option<&LowestPlaces>) -> Result<State> {
         let pressed = self.asked.pressed;
         let position = Position { lateral, yaw: self.yaw, roll: self.asked.roll };
         let Some(touch) = self.search.touch_near(&position, &Selection { within, apart: APART }, near)?

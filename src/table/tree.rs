@@ -3,13 +3,13 @@
 use super::about::About;
 use super::cell::{Beginning, Cell};
 use super::curve::Curve;
-use super::quantity::Values;
-use super::region::Branch;
+use super::quantity::QuantityValues;
+use super::region::Division;
 use crate::numerics::interval::Interval;
 
 /// A part of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum PlanePart {
     /// The fork with this number divides it.
     Fork(usize),
     /// It is the cell with this number.
@@ -24,7 +24,7 @@ pub struct Fork {
     /// The yaw \[rad\]; 0 where it is a curve.
     pub yaw: f64,
     /// What is below it, and what begins at it.
-    pub parts: [Part; 2],
+    pub parts: [PlanePart; 2],
 }
 
 /// Cells, the curves between them, and the forks on the way to them. The first fork is where the way begins; children have greater numbers.
@@ -35,12 +35,12 @@ pub(super) struct Tree {
     pub cells: Vec<Cell>,
     /// Of each cell the coefficients of u^j tᵏ of all quantities, at j · [`COEFFICIENTS`](super::COEFFICIENTS) + k; none where nothing
     /// touches, not a number where a quantity does not exist.
-    pub coefficients: Vec<Vec<Values>>,
+    pub coefficients: Vec<Vec<QuantityValues>>,
 }
 
 impl Tree {
     /// Makes the tree of a divided range.
-    pub fn of(branch: Branch, about: About) -> Self {
+    pub fn of(branch: Division, about: About) -> Self {
         let mut tree = Self::default();
         let ends = about.lateral.ends().map(|y| tree.curve(Curve::constant(y, about.yaw, Beginning::Edge)));
         tree.add(branch, ends);
@@ -63,7 +63,7 @@ impl Tree {
             .collect();
         let curves: Vec<usize> = (1..tree.cells.len()).collect();
         if !curves.is_empty() {
-            tree.fork_row(tree.cells.len(), &curves, &mut |_, cell| Part::Cell(cell));
+            tree.fork_row(tree.cells.len(), &curves, &mut |_, cell| PlanePart::Cell(cell));
         }
         tree
     }
@@ -74,34 +74,34 @@ impl Tree {
     }
 
     /// Adds a branch between two curves.
-    fn add(&mut self, branch: Branch, [begin, end]: [usize; 2]) -> Part {
+    fn add(&mut self, branch: Division, [begin, end]: [usize; 2]) -> PlanePart {
         match branch {
-            Branch::Cell(fitted) => {
+            Division::Cell(fitted) => {
                 self.cells.push(Cell { curves: [begin, end], ..fitted.cell });
                 self.coefficients.push(fitted.coefficients.into_iter().flatten().collect());
-                Part::Cell(self.cells.len() - 1)
+                PlanePart::Cell(self.cells.len() - 1)
             }
-            Branch::Yaw(yaw, parts) => {
+            Division::Yaw(yaw, parts) => {
                 let fork = self.fork(None, yaw);
                 let [below, above] = *parts;
                 let parts = [self.add(below, [begin, end]), self.add(above, [begin, end])];
                 self.forks[fork].parts = parts;
-                Part::Fork(fork)
+                PlanePart::Fork(fork)
             }
-            Branch::Along(parts, curves) => {
+            Division::Along(parts, curves) => {
                 let curves: Vec<usize> = curves.into_iter().map(|curve| self.curve(curve)).collect();
                 let bounds = [&[begin], curves.as_slice(), &[end]].concat();
-                let mut parts: Vec<Option<Branch>> = parts.into_iter().map(Some).collect();
+                let mut parts: Vec<Option<Division>> = parts.into_iter().map(Some).collect();
                 self.fork_row(parts.len(), &curves, &mut |tree, at| match parts[at].take() {
                     Some(part) => tree.add(part, [bounds[at], bounds[at + 1]]),
-                    None => Part::Cell(0),
+                    None => PlanePart::Cell(0),
                 })
             }
         }
     }
 
     fn fork(&mut self, curve: Option<usize>, yaw: f64) -> usize {
-        self.forks.push(Fork { curve, yaw, parts: [Part::Cell(0); 2] });
+        self.forks.push(Fork { curve, yaw, parts: [PlanePart::Cell(0); 2] });
         self.forks.len() - 1
     }
 
@@ -110,14 +110,14 @@ impl Tree {
         &mut self,
         count: usize,
         curves: &[usize],
-        add: &mut dyn FnMut(&mut Self, usize) -> Part,
-    ) -> Part {
+        add: &mut dyn FnMut(&mut Self, usize) -> PlanePart,
+    ) -> PlanePart {
         fn among(
             tree: &mut Tree,
             [from, to]: [usize; 2],
             curves: &[usize],
-            add: &mut dyn FnMut(&mut Tree, usize) -> Part,
-        ) -> Part {
+            add: &mut dyn FnMut(&mut Tree, usize) -> PlanePart,
+        ) -> PlanePart {
             if to - from == 1 {
                 return add(tree, from);
             }
@@ -125,7 +125,7 @@ impl Tree {
             let fork = tree.fork(Some(curves[middle - 1]), 0.0);
             let parts = [among(tree, [from, middle], curves, add), among(tree, [middle, to], curves, add)];
             tree.forks[fork].parts = parts;
-            Part::Fork(fork)
+            PlanePart::Fork(fork)
         }
         among(self, [0, count], curves, add)
     }

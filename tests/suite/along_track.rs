@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use wheelrail::error::Result;
-use wheelrail::lofted::{Joining, Loft, Slice};
+use wheelrail::lofted::{Joining, Loft, LoftSlice};
 use wheelrail::placement::{Track, Wheelset};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{
@@ -21,8 +21,8 @@ use super::campaign::scenes;
 const SPACING: f64 = 1500.0;
 pub(super) const RADIUS: f64 = 460.0;
 
-pub(super) fn slices(at: &[f64], profile: impl Fn(f64) -> Profile) -> Vec<Slice> {
-    let slice = |&at: &f64| Slice {
+pub(super) fn slices(at: &[f64], profile: impl Fn(f64) -> Profile) -> Vec<LoftSlice> {
+    let slice = |&at: &f64| LoftSlice {
         at,
         name: format!("at {at}"),
         profile: profile(at),
@@ -33,7 +33,12 @@ pub(super) fn slices(at: &[f64], profile: impl Fn(f64) -> Profile) -> Vec<Slice>
 }
 
 /// A march over the same lofted rail on both sides.
-pub(super) fn march_over(slices: &[Slice], wheel: Profile, position: Position, within: f64) -> Result<March> {
+pub(super) fn march_over(
+    slices: &[LoftSlice],
+    wheel: Profile,
+    position: Position,
+    within: f64,
+) -> Result<March> {
     let loft = Arc::new(Loft::new(slices, Joining::Monotone)?);
     let reach = loft.reach();
     let pair = Arc::new(LoftedPair::new(loft, &wheel, RADIUS)?);
@@ -230,11 +235,11 @@ fn a_wheel_goes_over_from_the_wing_to_the_nose_once() -> Result<()> {
 
 #[test]
 fn slices_that_make_no_surface_are_refused_by_name() {
-    let found = |slices: &[Slice]| {
+    let found = |slices: &[LoftSlice]| {
         Loft::new(slices, Joining::Monotone).err().map(|e| e.to_string()).unwrap_or_default()
     };
     let list = slices(&[0.0, 10.0, 20.0], |_| head(0.0, 0.0));
-    let with = |change: fn(&mut Vec<Slice>)| {
+    let with = |change: fn(&mut Vec<LoftSlice>)| {
         let mut list = list.clone();
         change(&mut list);
         found(&list)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use wheelrail::error::Result;
-use wheelrail::lofted::{Flat, Joining, LoftedWheel, Slice};
+use wheelrail::lofted::{Flat, Joining, LoftSlice, LoftedWheel};
 use wheelrail::placement::{Track, Wheelset};
 use wheelrail::profile::Section;
 use wheelrail::scene;
@@ -279,9 +279,9 @@ fn a_list_of_slices_around_a_wheel_is_the_wheel_of_its_radii() -> Result<()> {
     Ok(())
 }
 
-fn slice_of(at: f64) -> Result<Slice> {
+fn slice_of(at: f64) -> Result<LoftSlice> {
     let (name, profile) = (format!("at {at}"), line(60.0)?);
-    Ok(Slice { at, name, profile, features: Vec::new(), measured_along: None })
+    Ok(LoftSlice { at, name, profile, features: Vec::new(), measured_along: None })
 }
 
 #[test]

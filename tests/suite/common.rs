@@ -7,15 +7,15 @@ use wheelrail::internal::bracketed;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Polynomial, Profile, Segment, Shape};
 use wheelrail_report::errors::ComparedPoint;
-pub use wheelrail_report::reference::{Reference, ReferenceSegment};
+pub use wheelrail_report::reference::{ReferenceFile, ReferenceSegment};
 
 /// All reference scenes; they are part of the program, in `crates/report/src/reference`.
-pub fn references() -> Vec<Reference> {
+pub fn references() -> Vec<ReferenceFile> {
     wheelrail_report::reference::references().expect("reference files in their format")
 }
 
 /// All reference files of a folder below `tests`, in order of their names; at least one.
-pub fn references_in(name: &str) -> Vec<Reference> {
+pub fn references_in(name: &str) -> Vec<ReferenceFile> {
     let files = std::fs::read_dir(folder(name)).expect("the folder of reference values");
     let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
     files.retain(|path| path.extension().is_some_and(|e| e == "json"));
@@ -23,7 +23,8 @@ pub fn references_in(name: &str) -> Vec<Reference> {
     assert!(!files.is_empty(), "no reference values in tests/{name}");
     let read = |path: &std::path::PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Reference::read(&name, &std::fs::read_to_string(path).expect("a readable file")).expect("its format")
+        ReferenceFile::read(&name, &std::fs::read_to_string(path).expect("a readable file"))
+            .expect("its format")
     };
     files.iter().map(read).collect()
 }

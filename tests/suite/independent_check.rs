@@ -1,6 +1,6 @@
 //! The parry3d check agrees on every scene it should agree on, and on no mutation.
 
-use crate::common::{Reference, ReferenceSegment, references};
+use crate::common::{ReferenceFile, ReferenceSegment, references};
 use wheelrail::Interval;
 use wheelrail::nalgebra::{Unit, Vector3};
 use wheelrail::patch::Window;
@@ -44,7 +44,7 @@ fn assert_agrees(Verified { name, report }: &Verified) {
     assert!(report.seconds < SECONDS, "{name}: {} s", report.seconds);
 }
 
-fn subject(reference: &Reference) -> Subject {
+fn subject(reference: &ReferenceFile) -> Subject {
     Subject::of_reference(reference).expect("a scene that can be placed")
 }
 
@@ -68,8 +68,8 @@ fn every_built_in_pair_agrees() {
 }
 
 /// Scenes whose bodies are one arc or line each.
-fn simple_references() -> Vec<Reference> {
-    let simple = |r: &Reference| r.scene.rail.len() == 1 && r.scene.wheel.len() == 1;
+fn simple_references() -> Vec<ReferenceFile> {
+    let simple = |r: &ReferenceFile| r.scene.rail.len() == 1 && r.scene.wheel.len() == 1;
     let all: Vec<_> = references().into_iter().filter(simple).collect();
     assert!(all.len() >= 5);
     all

@@ -322,6 +322,23 @@ fn types_are_implemented_where_they_are_defined() {
     assert!(strangers.is_empty(), "{strangers:#?}");
 }
 
+/// Classes of the Python package have the names of what they wrap.
+#[test]
+fn a_type_name_means_one_thing() {
+    let mut homes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for folder in SOURCES.into_iter().filter(|folder| *folder != "crates/python/src") {
+        for file in Tree::of_folder(folder).0.values() {
+            // A macro's parameter is no name.
+            for name in file.types.iter().filter(|name| *name != "$") {
+                homes.entry(name.clone()).or_default().push(format!("{folder}/{}", file.module.join("/")));
+            }
+        }
+    }
+    assert!(homes.len() > 400, "only {} types were found", homes.len());
+    homes.retain(|_, files| files.len() > 1);
+    assert!(homes.is_empty(), "{homes:#?}");
+}
+
 #[test]
 fn no_room_imports_upward() {
     let tree = Tree::of_folder("src");

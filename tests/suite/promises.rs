@@ -14,7 +14,7 @@ use wheelrail::profile::{Profile, Shape, Side, standards};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
 use wheelrail_report::errors::{inside_contact, over_contact};
 use wheelrail_report::random::Random;
-use wheelrail_report::reference::Reference;
+use wheelrail_report::reference::ReferenceFile;
 use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
 
 /// Scenes of one ordinary test run.
@@ -388,7 +388,7 @@ fn exact_values_are_the_60_digit_ones() {
         let mut values: serde_json::Value =
             serde_json::from_str(&std::fs::read_to_string(path).expect("values")).expect("JSON");
         values["boundary"] = serde_json::json!([]);
-        serde_json::from_value::<Reference>(values).expect("a file of values")
+        serde_json::from_value::<ReferenceFile>(values).expect("a file of values")
     });
     let mut compared = 0;
     for reference in crate::common::references()

@@ -1,6 +1,6 @@
 //! Every scene of `crates/report/src/reference` and `tests/reference_spline` against its 60-digit values: the one table of accuracy bounds.
 
-use crate::common::{Reference, Worst, references, references_in};
+use crate::common::{ReferenceFile, Worst, references, references_in};
 use wheelrail::internal::missing_for_report_newton;
 use wheelrail::patch::Slicer;
 use wheelrail::separation::{EtaAxis, Method};
@@ -36,16 +36,16 @@ const BOUNDS: [Bound; 3] = [
 const BOUNDARY_SHARE: f64 = 0.01;
 
 /// Scenes of the drawings' segments, and of the cubic spans that measured profiles are made of.
-fn all_references() -> Vec<Reference> {
+fn all_references() -> Vec<ReferenceFile> {
     references().into_iter().chain(references_in("reference_spline")).collect()
 }
 
-fn scale(reference: &Reference) -> f64 {
+fn scale(reference: &ReferenceFile) -> f64 {
     (reference.scene.largest_radius() / 300.0).max(1.0)
 }
 
 /// Largest errors of one method on one scene, and their estimate \[mm\].
-fn errors(reference: &Reference, method: Option<Method>, tolerance: f64) -> (Worst, f64) {
+fn errors(reference: &ReferenceFile, method: Option<Method>, tolerance: f64) -> (Worst, f64) {
     let placement = reference.placement().expect("a placement");
     let [xi, eta] = reference.scene.axes();
     let plan = plan(&placement, &xi, &EtaAxis::new(&eta), tolerance, method);

@@ -1,6 +1,6 @@
 //! Yawed wheels against the 60-digit values of `tests/reference_yawed`, to bounds near those of the unyawed ones.
 
-use crate::common::{Reference, Worst, folder};
+use crate::common::{ReferenceFile, Worst, folder};
 use wheelrail::patch::Slicer;
 use wheelrail::placement::Placement;
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
@@ -12,7 +12,7 @@ const ABSOLUTE: f64 = 2.5e-15;
 
 /// Values, and the boundary in this folder's format: δ, ξ, both roots of s = δ in η, or none.
 struct Yawed {
-    reference: Reference,
+    reference: ReferenceFile,
     boundary: Vec<(f64, f64, Vec<String>)>,
 }
 
@@ -24,7 +24,7 @@ fn load(name: &str) -> (Yawed, Placement) {
     let mut values: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let boundary = std::mem::replace(&mut values["boundary"], serde_json::json!([]));
     let boundary = serde_json::from_value(boundary).expect("a boundary");
-    let reference: Reference = serde_json::from_value(values).expect("a file of values");
+    let reference: ReferenceFile = serde_json::from_value(values).expect("a file of values");
     let placement = reference.placement().expect("a placement");
     (Yawed { reference, boundary }, placement)
 }
@@ -65,7 +65,7 @@ fn yawed_grids_keep_every_tolerance_and_know_their_error() {
 }
 
 /// Adds values of η for which there is no reference.
-fn extend(reference: &mut Reference, extra: usize) {
+fn extend(reference: &mut ReferenceFile, extra: usize) {
     reference.scene.eta.extend((0..extra).map(|k| -11.3 + 0.21 * k as f64));
 }
 

@@ -8,7 +8,7 @@ use wheelrail::export::table_wrp;
 use wheelrail::load::{curvatures_at, quadratic_form_at};
 use wheelrail::scene;
 use wheelrail::search::SideTouch;
-use wheelrail::table::{ContactTable, Quantity};
+use wheelrail::table::{ContactTable, TableQuantity};
 use wheelrail::{Interval, Position, Result, Selection};
 
 /// Vertical load on each wheel \[N\].
@@ -56,7 +56,7 @@ fn case(profiles: &str, more: &str, sides: &str) -> Result<Case> {
 }
 
 /// What a search has found of one quantity.
-fn found(quantity: &Quantity, roll: f64, sides: &[SideTouch<'_>; 2], modulus: f64) -> f64 {
+fn found(quantity: &TableQuantity, roll: f64, sides: &[SideTouch<'_>; 2], modulus: f64) -> f64 {
     let Some(right) = quantity.right else { return roll };
     let side = &sides[usize::from(right)];
     let contact = &side.touch.contacts[0];

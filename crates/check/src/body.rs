@@ -1,7 +1,7 @@
 //! A body as a coarse mesh. Finds the segments that a ray meets first, and the heights measured there.
 
 use super::meshes::{Hit, Mesh, RayOrigin, Vector};
-use super::patch::{CurveMesh, SurfacePoint};
+use super::patch::{CurveMesh, ParameterPoint};
 use super::ray::{Height, foot, height};
 use super::sampler::{SampledCurve, SampledSurface};
 
@@ -143,12 +143,12 @@ impl Solid {
     }
 
     /// Returns guesses on every curve, for lines that miss the coarse mesh near a silhouette or an end.
-    fn all_ends(&self, eta: f64) -> Vec<SurfacePoint> {
+    fn all_ends(&self, eta: f64) -> Vec<ParameterPoint> {
         let curves = self.surface.curves.iter().enumerate();
-        curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| SurfacePoint { curve, t, v: eta })).collect()
+        curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| ParameterPoint { curve, t, v: eta })).collect()
     }
 
-    fn coarse(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<SurfacePoint> {
+    fn coarse(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<ParameterPoint> {
         let mesh = self.mesh.as_ref()?;
         // Rays through an edge or vertex of the mesh may miss it, so that places beside it are tried.
         let nudge = self.surface.size * f64::EPSILON.sqrt();
@@ -159,7 +159,7 @@ impl Solid {
     }
 
     /// Returns the coarse place, and the near ends of its neighbours if it is close to an end.
-    fn candidates(&self, coarse: &SurfacePoint) -> Vec<SurfacePoint> {
+    fn candidates(&self, coarse: &ParameterPoint) -> Vec<ParameterPoint> {
         let curves = &self.surface.curves;
         let mut all = vec![*coarse];
         let cell = |i: usize| {
@@ -172,7 +172,7 @@ impl Solid {
             if left > near {
                 break;
             }
-            all.push(SurfacePoint { curve: i, t: curves[i].length, v: coarse.v });
+            all.push(ParameterPoint { curve: i, t: curves[i].length, v: coarse.v });
             left += curves[i].length * curves[i].speed(0.0);
         }
         let mut right = (curves[coarse.curve].length - coarse.t) * curves[coarse.curve].speed(0.0);
@@ -180,31 +180,31 @@ impl Solid {
             if right > near {
                 break;
             }
-            all.push(SurfacePoint { curve: i, t: 0.0, v: coarse.v });
+            all.push(ParameterPoint { curve: i, t: 0.0, v: coarse.v });
             right += curve.length * curve.speed(0.0);
         }
         all
     }
 
-    fn on_curve(&self, place: &SurfacePoint) -> bool {
+    fn on_curve(&self, place: &ParameterPoint) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
         place.t >= -slack && place.t <= curve.length + slack
     }
 
     /// Returns whether a place is the end of its curve, up to rounding.
-    pub fn at_joint(&self, place: &SurfacePoint) -> bool {
+    pub fn at_joint(&self, place: &ParameterPoint) -> bool {
         let curve = &self.surface.curves[place.curve];
         let slack = self.slack(place);
         place.t <= slack || place.t >= curve.length - slack
     }
 
-    fn slack(&self, place: &SurfacePoint) -> f64 {
+    fn slack(&self, place: &ParameterPoint) -> f64 {
         JOINT * self.surface.size / self.surface.curves[place.curve].speed(place.t)
     }
 
     /// Returns whether a place is an end of the whole chain, up to rounding.
-    pub fn at_end(&self, place: &SurfacePoint) -> bool {
+    pub fn at_end(&self, place: &ParameterPoint) -> bool {
         let last = self.surface.curves.len() - 1;
         let slack = self.slack(place);
         (place.curve == 0 && place.t <= slack)
@@ -212,13 +212,13 @@ impl Solid {
     }
 
     /// Returns the places on the coarse mesh, and on the curves around, that are closest to `point`.
-    pub fn near(&self, point: Vector) -> Vec<SurfacePoint> {
+    pub fn near(&self, point: Vector) -> Vec<ParameterPoint> {
         let Some(mesh) = &self.mesh else { return Vec::new() };
         let place = self.own_place(mesh.closest_to(point));
         self.candidates(&place)
     }
 
-    fn own_place(&self, hit: Hit) -> SurfacePoint {
+    fn own_place(&self, hit: Hit) -> ParameterPoint {
         let (curve, triangle) = self.owners[hit.triangle];
         self.patches[curve].place(&Hit { triangle, ..hit })
     }

@@ -3,7 +3,7 @@
 
 use super::body::{Solid, spread};
 use super::meshes::Vector;
-use super::patch::{CurveMesh, SurfacePoint};
+use super::patch::{CurveMesh, ParameterPoint};
 use super::sampler::SampledSurface;
 
 /// First cell, as a share of the local scale.
@@ -29,7 +29,7 @@ const ALTERNATIONS: usize = 4;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Closest {
     /// Place on the body.
-    pub place: SurfacePoint,
+    pub place: ParameterPoint,
     /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// Distance of the point \[mm\].
@@ -45,7 +45,7 @@ pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
         .min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-fn on_curve(surface: &SampledSurface, start: SurfacePoint, point: Vector) -> Option<Closest> {
+fn on_curve(surface: &SampledSurface, start: ParameterPoint, point: Vector) -> Option<Closest> {
     let mut window = ClosingWindow::new(start, FIRST_CELL);
     for _ in 0..MOST_MESHES {
         let patch = window.patch(surface)?;
@@ -61,7 +61,7 @@ fn on_curve(surface: &SampledSurface, start: SurfacePoint, point: Vector) -> Opt
 }
 
 /// Returns the closest points of the two bodies near a pair of places: \[on the rail, on the wheel\].
-pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [SurfacePoint; 2]) -> Option<[Closest; 2]> {
+pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [ParameterPoint; 2]) -> Option<[Closest; 2]> {
     let mut windows = start.map(|place| ClosingWindow::new(place, FIRST_CELL));
     let surfaces = [&rail.surface, &wheel.surface];
     for _ in 0..MOST_MESHES {
@@ -96,12 +96,12 @@ pub(super) fn of_bodies(rail: &Solid, wheel: &Solid, start: [SurfacePoint; 2]) -
 
 /// A window of cells around a place. It shrinks from mesh to mesh.
 struct ClosingWindow {
-    place: SurfacePoint,
+    place: ParameterPoint,
     cell: f64,
 }
 
 impl ClosingWindow {
-    fn new(place: SurfacePoint, cell: f64) -> Self {
+    fn new(place: ParameterPoint, cell: f64) -> Self {
         Self { place, cell }
     }
 
@@ -113,7 +113,7 @@ impl ClosingWindow {
 
     fn patch(&self, surface: &SampledSurface) -> Option<CurveMesh> {
         let [h, k] = self.cells(surface);
-        let (SurfacePoint { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
+        let (ParameterPoint { curve, t, v }, half) = (self.place, CELLS as f64 / 2.0);
         let length = surface.curves[curve].length;
         let t = spread((t - half * h).max(0.0), (t + half * h).min(length), CELLS);
         CurveMesh::new(surface, curve, t, spread(v - half * k, v + half * k, CELLS))
@@ -121,10 +121,10 @@ impl ClosingWindow {
 
     /// Moves the window to a place of the patch. If the place is inside the patch, the window shrinks. Returns whether it
     /// was inside.
-    fn move_to(&mut self, surface: &SampledSurface, patch: &CurveMesh, place: SurfacePoint) -> bool {
+    fn move_to(&mut self, surface: &SampledSurface, patch: &CurveMesh, place: ParameterPoint) -> bool {
         let length = surface.curves[place.curve].length;
         let inside = !patch.at_border(&place, length);
-        self.place = SurfacePoint { t: place.t.clamp(0.0, length), ..place };
+        self.place = ParameterPoint { t: place.t.clamp(0.0, length), ..place };
         if inside {
             self.cell *= CLOSER;
         }

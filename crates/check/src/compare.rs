@@ -7,11 +7,11 @@ use super::body::{AlongZeta, FLANGEWAY, JOINT, STEEPEST, Solid};
 use super::closest::{of_bodies, to_point};
 use super::floor::{Floor, floors};
 use super::meshes::Vector;
-use super::patch::SurfacePoint;
+use super::patch::ParameterPoint;
 use super::points::spread_points;
 use super::ray::{FIRST_CELL, Height, extrapolated};
-use super::relation::{Above, RELATION, normals_between};
-use super::report::{Counts, Differences, Distances, Orders, Report};
+use super::relation::{OppositePoint, RELATION, normals_between};
+use super::report::{ClosestDistances, Counts, Differences, Orders, Report};
 use super::request::{Answer, Request};
 use super::sampler::{SampledCurve, SampledSurface};
 use wheelrail::Interval;
@@ -85,7 +85,7 @@ pub fn check(
     let (rail, wheel) = (solid(SampledSurface::rail(placement))?, solid(SampledSurface::wheel(placement))?);
     let floors = floors(smallest_radius(placement), placement.rolling_radius())?;
     let points = spread_points(placement, request, &rail.surface, &wheel.surface);
-    let mut tally = Tally::new(&rail, &wheel, &floors);
+    let mut tally = CheckTally::new(&rail, &wheel, &floors);
     for &[xi, eta] in &points {
         tally.ray(xi, eta, answer(xi, eta));
     }
@@ -136,7 +136,7 @@ fn contact_point(body: &Body) -> [f64; 2] {
 }
 
 /// Everything measured so far.
-struct Tally<'a> {
+struct CheckTally<'a> {
     rail: &'a Solid,
     wheel: &'a Solid,
     floors: &'a [Floor],
@@ -160,12 +160,12 @@ struct ComparedFeet {
     /// The program's s \[mm\].
     separation: f64,
     /// Places on the rail and on the wheel.
-    places: [SurfacePoint; 2],
+    places: [ParameterPoint; 2],
     /// Points at these places \[mm\].
     points: [Vector; 2],
 }
 
-impl<'a> Tally<'a> {
+impl<'a> CheckTally<'a> {
     fn new(rail: &'a Solid, wheel: &'a Solid, floors: &'a [Floor]) -> Self {
         Self {
             rail,
@@ -297,8 +297,8 @@ impl<'a> Tally<'a> {
         approach: f64,
         wheel_radius: f64,
         answer: &mut dyn FnMut(f64, f64) -> Answer,
-    ) -> Distances {
-        let none = Distances { bodies_mm: f64::NAN, ..Distances::default() };
+    ) -> ClosestDistances {
+        let none = ClosestDistances { bodies_mm: f64::NAN, ..ClosestDistances::default() };
         let close = |n: &&ComparedFeet| n.separation.abs() <= NEARBY * wheel_radius;
         let near: Vec<&ComparedFeet> = self.near.iter().filter(close).collect();
         let Some(least) = near.iter().min_by(|a, b| a.separation.total_cmp(&b.separation)) else {
@@ -312,10 +312,11 @@ impl<'a> Tally<'a> {
         for n in near.iter().step_by(every) {
             let separation = n.separation + lift;
             let point = n.points[1] + Vector::Z * lift;
-            relation.hold(self.rail, &Above { at: n.at, separation, point, foot: n.places[0] });
-            relation.hold(&wheel, &Above { at: n.at, separation, point: n.points[0], foot: n.places[1] });
+            relation.hold(self.rail, &OppositePoint { at: n.at, separation, point, foot: n.places[0] });
+            relation
+                .hold(&wheel, &OppositePoint { at: n.at, separation, point: n.points[0], foot: n.places[1] });
         }
-        let mut out = Distances { lift_mm: lift, ..none };
+        let mut out = ClosestDistances { lift_mm: lift, ..none };
         if let Some([below, above]) = of_bodies(self.rail, &wheel, least.places) {
             let at = [above.point.x, above.point.y];
             out.bodies_mm = above.point.distance(below.point);
@@ -328,7 +329,7 @@ impl<'a> Tally<'a> {
             };
             if let Some(foot) = foot.filter(|foot| !self.rail.at_end(foot)) {
                 let (separation, point) = (out.bodies_separation_mm, above.point);
-                relation.hold(self.rail, &Above { at, separation, point, foot });
+                relation.hold(self.rail, &OppositePoint { at, separation, point, foot });
             }
         }
         out.widest_mm = relation.widest;
@@ -336,7 +337,7 @@ impl<'a> Tally<'a> {
         out
     }
 
-    fn report(self, distances: Distances, contact_point: Option<[f64; 2]>) -> Report {
+    fn report(self, distances: ClosestDistances, contact_point: Option<[f64; 2]>) -> Report {
         let mut report = Report {
             agrees: false,
             objections: Vec::new(),
@@ -361,14 +362,14 @@ impl<'a> Tally<'a> {
 
 /// The relation between distances along ζ and closest distances, point by point.
 struct DistanceRelation<'a> {
-    tally: &'a Tally<'a>,
+    tally: &'a CheckTally<'a>,
     all: Vec<Compared>,
     widest: f64,
 }
 
 impl DistanceRelation<'_> {
     /// Checks s·min n ≤ d ≤ s·max n between a point and the body `solid`.
-    fn hold(&mut self, solid: &Solid, above: &Above) {
+    fn hold(&mut self, solid: &Solid, above: &OppositePoint) {
         let Some(closest) = to_point(solid, above.point) else {
             return self.all.push((f64::INFINITY, 1.0, above.at));
         };

@@ -28,6 +28,6 @@ pub use floor::Floor;
 pub use lofted::LoftedReport;
 pub use normal_gap::{NormalGapReport, NormalGapSample, check_normal_gap};
 pub use relation::RELATION;
-pub use report::{Counts, Differences, Distances, Orders, Report};
+pub use report::{ClosestDistances, Counts, Differences, Orders, Report};
 pub use request::{Answer, Request};
 pub use site::{SiteReport, check_site};

@@ -10,7 +10,7 @@ use std::time::Instant;
 use serde::Serialize;
 use wheelrail::Interval;
 use wheelrail::error::{Error, Result};
-use wheelrail::lofted::{FramedLoft, Strip};
+use wheelrail::lofted::{FramedLoft, LoftStrip};
 use wheelrail::placement::Placement;
 use wheelrail::profile::Side;
 
@@ -134,11 +134,11 @@ pub(super) fn check_lofted(
         let found = answer(at[0], at[1]);
         let met = (own.met(at, found, &other), other.along_zeta(at[0], at[1]));
         match met {
-            (Met::Steep, _) | (_, AlongZeta::Steep | AlongZeta::Unresolved) => steep_or_end += 1,
-            (Met::Nothing, _) | (_, AlongZeta::Nothing) if found.separation.is_nan() => no_surface += 1,
-            (Met::Nothing, _) | (_, AlongZeta::Nothing) => surface_disputed += 1,
+            (RayHit::Steep, _) | (_, AlongZeta::Steep | AlongZeta::Unresolved) => steep_or_end += 1,
+            (RayHit::Nothing, _) | (_, AlongZeta::Nothing) if found.separation.is_nan() => no_surface += 1,
+            (RayHit::Nothing, _) | (_, AlongZeta::Nothing) => surface_disputed += 1,
             _ if found.separation.is_nan() => surface_disputed += 1,
-            (Met::At { zeta, upright, normal }, AlongZeta::Heights(heights)) => {
+            (RayHit::At { zeta, upright, normal }, AlongZeta::Heights(heights)) => {
                 let error = heights.iter().map(|h| h.error).fold(0.0, f64::max);
                 let allowed = SAFETY * error + ROUNDINGS * own.size / upright.min(heights[0].normal.z);
                 let apart = own.apart(zeta, heights[0].zeta);
@@ -174,7 +174,7 @@ pub(super) fn check_lofted(
 }
 
 /// What a ray finds of the body that varies.
-enum Met {
+enum RayHit {
     At {
         zeta: f64,
         /// ζ component of the last mesh's normal.
@@ -257,7 +257,7 @@ impl<'a> MeshedLoft<'a> {
         Ok(made)
     }
 
-    fn point(&self, strip: &Strip, u: f64, y: f64) -> Vector {
+    fn point(&self, strip: &LoftStrip, u: f64, y: f64) -> Vector {
         let [x, z] = strip.point(u, y).at;
         let from = match self.lofted.side() {
             Side::Rail => Vector::new(x, y, z) - self.origin,
@@ -278,10 +278,10 @@ impl<'a> MeshedLoft<'a> {
 
     /// Measures the sheet that a line meets first from the other body; where that is so much nearer than the program's answer that it may
     /// be another head, the one behind.
-    fn met(&self, at: [f64; 2], found: Answer, other: &Solid) -> Met {
+    fn met(&self, at: [f64; 2], found: Answer, other: &Solid) -> RayHit {
         let rail = self.lofted.side() == Side::Rail;
         let first = self.ray(at, if rail { RayOrigin::Above } else { RayOrigin::Below });
-        let (Met::At { zeta, .. }, AlongZeta::Heights(heights)) = (&first, other.along_zeta(at[0], at[1]))
+        let (RayHit::At { zeta, .. }, AlongZeta::Heights(heights)) = (&first, other.along_zeta(at[0], at[1]))
         else {
             return first;
         };
@@ -299,23 +299,23 @@ impl<'a> MeshedLoft<'a> {
         let rail = self.lofted.side() == Side::Rail;
         let origin = if rail { RayOrigin::DownFrom(zeta + NEAR) } else { RayOrigin::UpFrom(zeta - NEAR) };
         match self.ray([xi, eta], origin) {
-            Met::Steep => None,
-            Met::Nothing => Some((f64::INFINITY, 0.0, [xi, eta])),
-            Met::At { zeta: met, upright, .. } => {
+            RayHit::Steep => None,
+            RayHit::Nothing => Some((f64::INFINITY, 0.0, [xi, eta])),
+            RayHit::At { zeta: met, upright, .. } => {
                 Some(((met - zeta).abs(), ROUNDINGS * self.size / upright, [xi, eta]))
             }
         }
     }
 
-    fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> Met {
+    fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> RayHit {
         let outward = if self.lofted.side() == Side::Rail { 1.0 } else { -1.0 };
         let met = self.meshes.iter().filter_map(|own| Some((own, own.mesh.along_zeta(xi, eta, origin)?)));
         let height = |hit: &Hit| outward * hit.point.z;
         let Some((own, hit)) = met.max_by(|a, b| height(&a.1).total_cmp(&height(&b.1))) else {
-            return Met::Nothing;
+            return RayHit::Nothing;
         };
         if own.mesh.normal(hit.triangle).z < STEEPEST {
-            return Met::Steep;
+            return RayHit::Steep;
         }
         let strip = &self.lofted.loft().strips[own.strip];
         let mut place = parameters([&own.u, &own.y], &hit);
@@ -332,11 +332,11 @@ impl<'a> MeshedLoft<'a> {
             let Some((mesh, hit)) =
                 mesh.and_then(|mesh| mesh.along_zeta(xi, eta, RayOrigin::Above).map(|hit| (mesh, hit)))
             else {
-                return Met::Steep;
+                return RayHit::Steep;
             };
             upright = mesh.normal(hit.triangle).z;
             if upright < STEEPEST {
-                return Met::Steep;
+                return RayHit::Steep;
             }
             (place, zeta) = (parameters([&u, &y], &hit), hit.point.z);
             share *= CLOSER;
@@ -344,7 +344,7 @@ impl<'a> MeshedLoft<'a> {
         let inside = |at: f64, range: Interval, least: f64| at > range.low + least && at < range.high - least;
         let own = inside(place[0], Interval::new(0.0, strip.cells() as f64), NORMAL_CELL);
         if !(own && inside(place[1], strip.reach(), NORMAL_CELL * ALONG)) {
-            return Met::Steep;
+            return RayHit::Steep;
         }
         let own = inside(place[0].fract(), Interval::new(0.0, 1.0), NORMAL_CELL);
         let smooth = own && inside(place[1], strip.bay_at(place[1]).y(), NORMAL_CELL * ALONG);
@@ -353,6 +353,6 @@ impl<'a> MeshedLoft<'a> {
             let corner = |a: f64, b: f64| self.point(strip, place[0] + a * h, place[1] + b * k);
             (corner(0.5, 0.5) - corner(-0.5, -0.5)).cross(corner(-0.5, 0.5) - corner(0.5, -0.5)).normalize()
         };
-        Met::At { zeta, upright, normal: smooth.then(|| extrapolated(direction)) }
+        RayHit::At { zeta, upright, normal: smooth.then(|| extrapolated(direction)) }
     }
 }

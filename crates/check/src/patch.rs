@@ -15,7 +15,7 @@ pub(super) struct CurveMesh {
 
 /// A point of a surface, given by its parameters.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SurfacePoint {
+pub(super) struct ParameterPoint {
     /// Index of the curve.
     pub curve: usize,
     /// Parameter along the curve.
@@ -34,14 +34,14 @@ impl CurveMesh {
     }
 
     /// Returns the parameters of a hit.
-    pub fn place(&self, hit: &Hit) -> SurfacePoint {
+    pub fn place(&self, hit: &Hit) -> ParameterPoint {
         let [t, v] = parameters([&self.t, &self.v], hit);
-        SurfacePoint { curve: self.curve, t, v }
+        ParameterPoint { curve: self.curve, t, v }
     }
 
     /// Returns whether a place is in the outer ring of cells, so that the true place may be outside; ends of
     /// the curve (0 and `length`) are no border.
-    pub fn at_border(&self, place: &SurfacePoint, length: f64) -> bool {
+    pub fn at_border(&self, place: &ParameterPoint, length: f64) -> bool {
         let outer = |x: &[f64], value: f64, whole: Interval| {
             let last = x.len() - 1;
             (value < x[1] && x[0] > whole.low) || (value > x[last - 1] && x[last] < whole.high)

@@ -6,7 +6,7 @@
 //! rigorous bracket.
 
 use super::meshes::{RayOrigin, Vector};
-use super::patch::{CurveMesh, SurfacePoint};
+use super::patch::{CurveMesh, ParameterPoint};
 use super::sampler::SampledSurface;
 use wheelrail::Interval;
 
@@ -33,7 +33,7 @@ const NEWTON: usize = 40;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Height {
     /// Place on the surface.
-    pub place: SurfacePoint,
+    pub place: ParameterPoint,
     /// Extrapolated ζ \[mm\].
     pub zeta: f64,
     /// Estimated error of the extrapolation \[mm\].
@@ -49,7 +49,12 @@ pub(super) struct Height {
 }
 
 /// Returns the foot on one curve or its continuation: solves (ξ, η) of X(t, v) by Newton steps from a guess.
-pub(super) fn foot(surface: &SampledSurface, guess: SurfacePoint, xi: f64, eta: f64) -> Option<SurfacePoint> {
+pub(super) fn foot(
+    surface: &SampledSurface,
+    guess: ParameterPoint,
+    xi: f64,
+    eta: f64,
+) -> Option<ParameterPoint> {
     let mut place = guess;
     let curve = &surface.curves[place.curve];
     let mut last = f64::INFINITY;
@@ -78,7 +83,7 @@ pub(super) fn foot(surface: &SampledSurface, guess: SurfacePoint, xi: f64, eta: 
 }
 
 /// Returns the height at a foot; `None` if the sheet is vertical there.
-pub(super) fn height(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> Option<Height> {
+pub(super) fn height(surface: &SampledSurface, place: ParameterPoint, xi: f64, eta: f64) -> Option<Height> {
     let bracket = bracket(surface, place, xi, eta)?;
     let rounding = rounding(surface, bracket.1);
     let mut best: Option<RichardsonTable> = None;
@@ -117,7 +122,7 @@ fn rounding(surface: &SampledSurface, normal_zeta: f64) -> f64 {
 /// cell.
 fn heights(
     surface: &SampledSurface,
-    place: SurfacePoint,
+    place: ParameterPoint,
     xi: f64,
     eta: f64,
     first: f64,
@@ -134,7 +139,7 @@ fn heights(
 }
 
 /// Returns 3 × 3 cells with the place inside the middle one.
-fn around(surface: &SampledSurface, place: SurfacePoint, [h, k]: [f64; 2]) -> Option<CurveMesh> {
+fn around(surface: &SampledSurface, place: ParameterPoint, [h, k]: [f64; 2]) -> Option<CurveMesh> {
     let nodes = |x: f64, cell: f64, inside: f64| {
         [-1.0, 0.0, 1.0, 2.0].iter().map(|i| x + (i - inside) * cell).collect()
     };
@@ -142,7 +147,7 @@ fn around(surface: &SampledSurface, place: SurfacePoint, [h, k]: [f64; 2]) -> Op
 }
 
 /// Returns a rigorous bracket of ζ, and the least ζ component of the normal around the foot.
-fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> Option<(Interval, f64)> {
+fn bracket(surface: &SampledSurface, place: ParameterPoint, xi: f64, eta: f64) -> Option<(Interval, f64)> {
     let h = BRACKET_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let patch = around(surface, place, [h, k])?;
@@ -159,7 +164,7 @@ fn bracket(surface: &SampledSurface, place: SurfacePoint, xi: f64, eta: f64) -> 
 
 /// Returns the normal of the cell centred on the place, its diagonals' cross product: it is even in h, so
 /// that the errors in h², h⁴, … can be removed.
-fn normal(surface: &SampledSurface, place: SurfacePoint) -> (Vector, f64) {
+fn normal(surface: &SampledSurface, place: ParameterPoint) -> (Vector, f64) {
     let h = FIRST_CELL * surface.curves[place.curve].scale;
     let k = surface.v_cell(place.curve, place.t, h);
     let of_cell = |share: f64| {

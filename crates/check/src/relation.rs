@@ -9,7 +9,7 @@
 use super::body::Solid;
 use super::closest::Closest;
 use super::meshes::Vector;
-use super::patch::SurfacePoint;
+use super::patch::ParameterPoint;
 use super::sampler::{SampledCurve, SampledSurface};
 use wheelrail::Interval;
 
@@ -24,7 +24,7 @@ const PIECE: f64 = 1.0 / 16.0;
 const HALVINGS: u32 = 52;
 
 /// A point of one body above or below the other body.
-pub(super) struct Above {
+pub(super) struct OppositePoint {
     /// Coordinates (ξ, η) \[mm\].
     pub at: [f64; 2],
     /// s at the point, lift included \[mm\].
@@ -32,14 +32,19 @@ pub(super) struct Above {
     /// Coordinates of the point \[mm\].
     pub point: Vector,
     /// The foot along ζ on the other body.
-    pub foot: SurfacePoint,
+    pub foot: ParameterPoint,
 }
 
 /// Returns the range of n between the foot of `above` and the closest point of `solid`.
 ///
 /// If the closest point is a joint or an end, the direction to it counts as well, because any direction between the normals
 /// of the neighbours can be the closest one's. An end that the closest point only passes on its way is not seen.
-pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, rounding: f64) -> Interval {
+pub(super) fn normals_between(
+    solid: &Solid,
+    above: &OppositePoint,
+    closest: &Closest,
+    rounding: f64,
+) -> Interval {
     let surface = &solid.surface;
     let foot = surface.point(above.foot.curve, above.foot.t, above.foot.v);
     let h = (closest.point.z - foot.z).abs() + closest.error + rounding;
@@ -54,7 +59,7 @@ pub(super) fn normals_between(solid: &Solid, above: &Above, closest: &Closest, r
 }
 
 /// Returns the range of the ζ component of the unit normals of all points up to `reach` from a place.
-fn normals_within(surface: &SampledSurface, foot: &SurfacePoint, reach: f64) -> Interval {
+fn normals_within(surface: &SampledSurface, foot: &ParameterPoint, reach: f64) -> Interval {
     let centre = surface.curves[foot.curve].point(foot.t);
     let near = Disc { centre, reach };
     let own = Interval::of(surface.curves[foot.curve].angle(foot.t));
@@ -118,7 +123,7 @@ mod tests {
         let pair = Pair::new(rail?, wheel?, 460.0)?;
         let placement = pair.placed(1.0, 0.0, 0.0)?;
         let surface = SampledSurface::rail(&placement);
-        let foot = SurfacePoint { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
+        let foot = ParameterPoint { curve: 0, t: surface.curves[0].length / 2.0, v: 0.0 };
         for reach in [0.3, 0.9] {
             let [least, most] = normals_within(&surface, &foot, reach).ends();
             let component = |x: f64| 1.0 / (1.0 + (0.03 * x * x - 0.03).powi(2)).sqrt();

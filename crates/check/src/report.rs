@@ -49,7 +49,7 @@ pub struct Orders {
 
 /// Closest distances compared with the separation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Distances {
+pub struct ClosestDistances {
     /// Amount by which the relation is violated \[mm\]; 0 if it holds.
     pub violation: Differences,
     /// Widest interval of the relation \[mm\], which tells how sharp it is.
@@ -110,7 +110,7 @@ pub struct Report {
     /// The text [`RELATION`](super::RELATION).
     pub relation: &'static str,
     /// Closest distances compared with the separation.
-    pub distances: Distances,
+    pub distances: ClosestDistances,
     /// Time of the check \[s\].
     pub seconds: f64,
 }
@@ -236,7 +236,7 @@ impl fmt::Display for Report {
             self.relation
         )?;
         writeln!(f, "    widest range {:.1e} mm", self.distances.widest_mm)?;
-        let Distances { lift_mm, bodies_mm, bodies_separation_mm, .. } = self.distances;
+        let ClosestDistances { lift_mm, bodies_mm, bodies_separation_mm, .. } = self.distances;
         writeln!(
             f,
             "  bodies: {bodies_mm:.6} mm apart with the wheel lifted by {lift_mm:.6} mm; along ζ from there {}",

@@ -13,7 +13,7 @@ use wheelrail::profile::{Polynomial, Segment, Shape, Station};
 /// One segment as a curve (x − x_C, z − z_C)(t), 0 ≤ t ≤ length.
 #[derive(Debug, Clone)]
 pub(super) struct SampledCurve {
-    shape: Form,
+    shape: SampledForm,
     /// Largest parameter: \[mm\] along arcs and lines, else in the polynomial's own unit.
     pub length: f64,
     /// Range of the parameter over which the curve turns or stretches by about one: a radius, or its length.
@@ -23,7 +23,7 @@ pub(super) struct SampledCurve {
 }
 
 #[derive(Debug, Clone)]
-enum Form {
+enum SampledForm {
     Turning {
         start: Station,
         curvature: f64,
@@ -63,7 +63,7 @@ impl SampledCurve {
                 let [x, z] = polynomial.coefficients();
                 let begin = polynomial.range()[0];
                 let local = [(x, origin[0]), (z, origin[1])].map(|(c, origin)| about(&c, begin, origin));
-                let shape = Form::Polynomial { polynomial: polynomial.clone(), local };
+                let shape = SampledForm::Polynomial { polynomial: polynomial.clone(), local };
                 let curve = Self { shape, length, scale: length, longest: length };
                 curve.with_scale_of_polynomial(polynomial)
             }
@@ -72,7 +72,7 @@ impl SampledCurve {
 
     fn turning(start: &Station, curvature: f64, length: f64, scale: f64, [x, z]: [f64; 2]) -> Self {
         let start = Station { x: start.x - x, z: start.z - z, ..*start };
-        Self { shape: Form::Turning { start, curvature }, length, scale, longest: length }
+        Self { shape: SampledForm::Turning { start, curvature }, length, scale, longest: length }
     }
 
     /// Sets the scale to the smaller of the parameter range and the sharpest of nine radii, in units of the
@@ -92,7 +92,7 @@ impl SampledCurve {
     /// Returns (x − x_C, z − z_C) \[mm\] in profile axes. Beyond its ends the curve continues unchanged.
     pub fn point(&self, t: f64) -> [f64; 2] {
         match &self.shape {
-            Form::Turning { start, curvature } => {
+            SampledForm::Turning { start, curvature } => {
                 // Half the turn: the chord has the mean angle of its two end tangents.
                 let half = t * curvature / 2.0;
                 let chord = if half == 0.0 { t } else { t * (half.sin() / half) };
@@ -102,7 +102,7 @@ impl SampledCurve {
                     start.z + chord * (start.sin * cos + start.cos * sin),
                 ]
             }
-            Form::Polynomial { local: [x, z], .. } => {
+            SampledForm::Polynomial { local: [x, z], .. } => {
                 [x, z].map(|c| c.iter().rev().fold(Twice::from(0.0), |sum, c| sum * t + *c).into())
             }
         }
@@ -111,8 +111,10 @@ impl SampledCurve {
     /// Returns the angle \[rad\] of the tangent in profile axes.
     pub fn angle(&self, t: f64) -> f64 {
         match &self.shape {
-            Form::Turning { start, curvature } => start.angle() + t * curvature,
-            Form::Polynomial { polynomial, .. } => polynomial.station(polynomial.range()[0] + t).angle(),
+            SampledForm::Turning { start, curvature } => start.angle() + t * curvature,
+            SampledForm::Polynomial { polynomial, .. } => {
+                polynomial.station(polynomial.range()[0] + t).angle()
+            }
         }
     }
 
@@ -134,8 +136,8 @@ impl SampledCurve {
     /// Returns a bound of |d²(x, z)/dt²| within `reach` of t.
     pub fn bend(&self, t: f64, reach: f64) -> f64 {
         match &self.shape {
-            Form::Turning { curvature, .. } => curvature.abs(),
-            Form::Polynomial { polynomial, .. } => {
+            SampledForm::Turning { curvature, .. } => curvature.abs(),
+            SampledForm::Polynomial { polynomial, .. } => {
                 let bound = |c: &[[f64; 2]]| -> f64 {
                     let local = recentred(&exact(c), (polynomial.range()[0] + t).into());
                     let terms = local.iter().enumerate().skip(2);
@@ -164,7 +166,7 @@ pub(super) struct SampledSurface {
     /// Whether this is the upper body.
     is_wheel: bool,
     /// How the curve is turned; `None` for a rail.
-    turned: Option<Turned>,
+    turned: Option<AboutAxle>,
     /// Lift along ζ \[mm\].
     lift: f64,
     /// Largest coordinate that was rounded on the way \[mm\].
@@ -173,7 +175,7 @@ pub(super) struct SampledSurface {
 
 /// A turn about an axle.
 #[derive(Debug, Clone, Copy)]
-struct Turned {
+struct AboutAxle {
     /// Height of the axle over C \[mm\], negative for a roller's.
     axle: f64,
     /// sin χ and cos χ.
@@ -186,7 +188,7 @@ impl SampledSurface {
         let z = placement.rail().point().station.z;
         let turned = match placement.rail().generator() {
             Generator::Extruded => None,
-            Generator::Revolved { radius } => Some(Turned { axle: -(radius + z), skew: (0.0, 1.0) }),
+            Generator::Revolved { radius } => Some(AboutAxle { axle: -(radius + z), skew: (0.0, 1.0) }),
         };
         Self::new(placement.rail(), false, turned)
     }
@@ -194,10 +196,10 @@ impl SampledSurface {
     /// Makes the revolved wheel of a placed pair, turned about ζ by the skew.
     pub fn wheel(placement: &Placement) -> Self {
         let axle = placement.wheel_radius() - placement.wheel().point().station.z;
-        Self::new(placement.wheel(), true, Some(Turned { axle, skew: placement.skew().sin_cos() }))
+        Self::new(placement.wheel(), true, Some(AboutAxle { axle, skew: placement.skew().sin_cos() }))
     }
 
-    fn new(body: &Body, is_wheel: bool, turned: Option<Turned>) -> Self {
+    fn new(body: &Body, is_wheel: bool, turned: Option<AboutAxle>) -> Self {
         let c = body.point().station;
         let origin = [c.x, c.z];
         let extent = body.profile().extent();
@@ -220,7 +222,7 @@ impl SampledSurface {
     /// Returns the point (ξ, η, ζ) \[mm\].
     pub fn point(&self, curve: usize, t: f64, v: f64) -> Vector {
         let [x, z] = self.curves[curve].point(t);
-        let Some(Turned { axle, skew }) = self.turned else {
+        let Some(AboutAxle { axle, skew }) = self.turned else {
             return Vector::new(x * self.cos + z * self.sin, v, z * self.cos - x * self.sin + self.lift);
         };
         // Turned about the axle by φ: z rises by w(1 − cos φ) = 2w sin²(φ/2), w negative over a roller's axle.
@@ -257,7 +259,7 @@ impl SampledSurface {
     ///
     /// Method: n = cosψ cosφ cosθ + sinψ sinθ at the tangent's angle ψ, turned about the axle by φ.
     pub fn normals_between(&self, tilts: Interval, v: f64, z: f64, reach: f64) -> Interval {
-        let turned = self.turned.map_or([0.0; 2], |Turned { axle, .. }| {
+        let turned = self.turned.map_or([0.0; 2], |AboutAxle { axle, .. }| {
             // The chord of an angle is at least 2/π of its arc.
             let least = (axle - z).abs() - reach;
             let (turn, away) = ((v / axle).abs(), reach * std::f64::consts::FRAC_PI_2 / least);
@@ -290,7 +292,7 @@ impl SampledSurface {
         let least_speed = (speed - bend * reach).max(0.0);
         let turn = bend * h / least_speed;
         let along = h * h * bend;
-        let Some(Turned { axle, .. }) = self.turned else { return [along / 4.0, turn] };
+        let Some(AboutAxle { axle, .. }) = self.turned else { return [along / 4.0, turn] };
         let [_, z] = self.curves[curve].point(t);
         let greatest_speed = speed + bend * reach;
         let mixed = h * k * greatest_speed / axle.abs();

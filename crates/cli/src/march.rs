@@ -23,7 +23,7 @@ pub(super) struct MarchArguments {
     /// `flat`, `radii`, or a list `.slcw` without `angle`.
     scene: PathBuf,
     #[command(flatten)]
-    places: Places,
+    places: MarchPlaces,
     /// File to write; if not given, stdout.
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
@@ -41,7 +41,7 @@ pub(super) struct MarchArguments {
 /// Where a march goes.
 #[derive(Debug, clap::Args)]
 #[group(required = true, multiple = false)]
-struct Places {
+struct MarchPlaces {
     /// Places of the axle's middle along the track FROM:TO:STEP, mm, as the lists count.
     #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
     along: Option<String>,
@@ -50,7 +50,7 @@ struct Places {
     angle: Option<String>,
 }
 
-impl Places {
+impl MarchPlaces {
     /// Reads the places, with the course on which they lie.
     fn read(&self) -> Result<(MarchCourse, Vec<f64>)> {
         match (&self.along, &self.angle) {

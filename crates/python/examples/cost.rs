@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use wheelrail::case::{Columns, DoubtSet};
+use wheelrail::case::{DoubtSet, SweepColumns};
 use wheelrail::search::ONE_CONTACT;
 use wheelrail::search::ParallelSweep;
 use wheelrail::separation::{EtaAxis, Values, plan};
@@ -58,10 +58,10 @@ fn sweep(system: &WheelsetOnTrack) -> wheelrail::Result<f64> {
         let positions: Vec<Position> =
             (0..count).map(|k| Position { lateral: lateral(k), yaw: 0.0, roll: Roll::Solve }).collect();
         let selection = Selection { within: 0.0, apart: ONE_CONTACT };
-        let mut all = Columns::default();
+        let mut all = SweepColumns::default();
         all.reserve(2 * count);
         ParallelSweep { system, selection, conicity: None, positions: &positions }.blocks(
-            |chunk: &mut Columns, number, rows| {
+            |chunk: &mut SweepColumns, number, rows| {
                 rows.iter().for_each(|row| chunk.push(number, row, None, DoubtSet::default()));
                 Ok(())
             },

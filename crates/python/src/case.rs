@@ -20,7 +20,7 @@ use crate::long::{waited, watched};
 use crate::place::Spot;
 use crate::positions::positions;
 use crate::profile::Profile;
-use crate::sweep::{Asked, Drawn, sweep};
+use crate::sweep::{AskedOfSweep, DrawnPositions, sweep};
 use crate::text::{keyed, parsed, to_json, to_python};
 use crate::values::made;
 
@@ -196,7 +196,7 @@ impl Case {
         let own = own_angles(py, position)?;
         let positions = positions(lateral, yaw.or(Some(&own[0])), roll.or(Some(&own[1])))?;
         let question = case.question();
-        let asked = Asked {
+        let asked = AskedOfSweep {
             within: case.standing().within,
             conicity,
             ellipses: question.approach.map(|by: ApproachBy| (by, question.modulus())),
@@ -238,7 +238,7 @@ impl Case {
         let (system, _) = self.wheelset()?;
         let columns = table.getattr("_columns");
         let columns = columns.map_err(|_| PyTypeError::new_err("table: expected the table of a sweep"))?;
-        let Drawn { columns, lateral, about } = Drawn::of(columns.cast()?)?;
+        let DrawnPositions { columns, lateral, about } = DrawnPositions::of(columns.cast()?)?;
         let page = sweep_page(&self.inner.case, system, &columns, &lateral, &about).or_raise()?;
         Ok(String::from_utf8_lossy(&page.html()).into_owned())
     }

@@ -18,7 +18,7 @@ use crate::errors::{OrRaise, exception, warn};
 use crate::filling::{checked_axes, fill, named_method};
 use crate::long::detached;
 use crate::patch::Patch;
-use crate::place::{Origin, Place, Spot, joined};
+use crate::place::{ContactOrigin, FoundAt, Spot, joined};
 use crate::profile::Profile;
 use crate::values::{made, mesh, vectors};
 
@@ -39,10 +39,10 @@ pub(crate) struct Contact {
 }
 
 /// An array (n,).
-type Axis<'py> = Bound<'py, PyArray1<f64>>;
+type AxisArray<'py> = Bound<'py, PyArray1<f64>>;
 
 /// Two arrays (n, m, 3).
-type Normals<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
+type NormalArrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
 
 impl Contact {
     pub(crate) fn of(spot: Spot) -> Self {
@@ -241,7 +241,7 @@ impl Contact {
         &self,
         py: Python<'py>,
         sigma: &Bound<'py, PyAny>,
-    ) -> PyResult<(Axis<'py>, Axis<'py>, Axis<'py>)> {
+    ) -> PyResult<(AxisArray<'py>, AxisArray<'py>, AxisArray<'py>)> {
         let rail = RailArcLength::new(self.placement()?);
         let nowhere = [f64::NAN; 3];
         let point =
@@ -259,7 +259,7 @@ impl Contact {
         py: Python<'py>,
         xi: &Bound<'py, PyAny>,
         eta: &Bound<'py, PyAny>,
-    ) -> PyResult<Normals<'py>> {
+    ) -> PyResult<NormalArrays<'py>> {
         let [xi, eta] = checked_axes(("xi", xi), eta, 1.0)?;
         // The grid of the numbers of both bodies, so that its size is checked.
         let placement = self.placement()?;
@@ -419,12 +419,12 @@ impl Contact {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (found, chosen) = match &self.spot.origin {
-            Origin::OfCase(case, number) => {
+            ContactOrigin::OfCase(case, number) => {
                 let make = py.import("wheelrail._scene")?.getattr("contact_of")?;
                 return Ok((make, (case.bind(py), *number).into_pyobject(py)?));
             }
-            Origin::Found(found) => (Some(postcard::to_allocvec(found).map_err(lost)?), None),
-            Origin::Chosen(points) => (None, Some(*points)),
+            ContactOrigin::Found(found) => (Some(postcard::to_allocvec(found).map_err(lost)?), None),
+            ContactOrigin::Chosen(points) => (None, Some(*points)),
         };
         let make = py.import("wheelrail._wheelrail")?.getattr("contact_from_parts")?;
         let pair = &self.spot.pair;
@@ -436,13 +436,13 @@ impl Contact {
 }
 
 /// Rail and wheel, and the radii of wheel and roller.
-type Bodies = ((Profile, Profile), (f64, Option<f64>));
+type BodiesAndRadii = ((Profile, Profile), (f64, Option<f64>));
 
 /// Make a contact of its bodies, with its side and number and what a search found, or with the points that were chosen.
 #[pyfunction]
 #[pyo3(signature = (bodies, place, found, chosen))]
 pub(crate) fn contact_from_parts(
-    bodies: Bodies,
+    bodies: BodiesAndRadii,
     place: Option<(String, usize)>,
     found: Option<&[u8]>,
     chosen: Option<[f64; 3]>,
@@ -454,7 +454,7 @@ pub(crate) fn contact_from_parts(
         return Ok(Contact::of(Spot::chosen(placement, [rail_x, wheel_x, skew])));
     }
     let known = |name: &str| ["left", "right", "single"].into_iter().find(|known| *known == name);
-    let parts = place.and_then(|(side, number)| Some(Place { side: known(&side)?, number })).zip(found);
+    let parts = place.and_then(|(side, number)| Some(FoundAt { side: known(&side)?, number })).zip(found);
     let Some((place, found)) = parts else {
         let expected = "the parts of a pickled contact of this version";
         return Err(exception(Error::new("contact", "other parts", expected, "pickle it anew")));

@@ -4,7 +4,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::measure::{
-    AveragePoint, MeasureOptions, PointNoise, Row, RowColumns, average, measure, measure_noisy, repeated,
+    AveragePoint, MeasureOptions, MeasureRow, PointNoise, RowColumns, average, measure, measure_noisy,
+    repeated,
 };
 use wheelrail::measured::{CurveKind, Options, of_points};
 use wheelrail::{Error, Side};
@@ -55,7 +56,7 @@ pub(crate) fn measure_profile<'py>(
         Some(noise) => measure_noisy(&own, side, nominal.as_ref(), &options, &noise),
     })?;
     let measures = measures.with_diameter(profile.recorded("diameter").as_f64());
-    let row = Row { file: profile.profile.name.clone(), side: Some(side), measured: Ok(measures) };
+    let row = MeasureRow { file: profile.profile.name.clone(), side: Some(side), measured: Ok(measures) };
     to_python(py, &row.values(RowColumns { spread, limits: None }))
 }
 
@@ -92,7 +93,7 @@ pub(crate) fn measure_repeats<'py>(
         repeated(&all.iter().collect::<Vec<_>>())
     })?;
     let file = format!("mean of {} repeats", profiles.len());
-    let row = Row { file, side: Some(side), measured: Ok(mean) };
+    let row = MeasureRow { file, side: Some(side), measured: Ok(mean) };
     to_python(py, &row.values(RowColumns { spread: Some("repeats"), limits: None }))
 }
 
@@ -109,7 +110,7 @@ fn curve(profile: &Profile) -> Options {
 }
 
 /// A column of an average: its name, and its value at a point.
-type Column = (&'static str, fn(&AveragePoint) -> f64);
+type AverageColumn = (&'static str, fn(&AveragePoint) -> f64);
 
 fn known(side: Option<Side>) -> PyResult<Side> {
     let advice = "give `side`, rail or wheel";
@@ -172,7 +173,7 @@ pub(crate) fn average_profiles<'py>(
     })?;
     let out = PyDict::new(py);
     out.set_item("profile", Profile::measured(py, measured, Some(side))?)?;
-    let columns: [Column; 5] = [
+    let columns: [AverageColumn; 5] = [
         ("x_mm", |point| point.at[0]),
         ("z_mm", |point| point.at[1]),
         ("spread_mm", |point| point.spread),

@@ -11,7 +11,7 @@ use wheelrail::search::{self, ONE_CONTACT, Pose, ProfilePair, Selection, TrackSi
 
 use crate::contact::Contact;
 use crate::errors::{OrRaise, exception, warn};
-use crate::place::{Place, Spot, joined};
+use crate::place::{FoundAt, Spot, joined};
 use crate::profile::Profile;
 use crate::values::made;
 
@@ -171,7 +171,8 @@ impl Pair {
 
     /// Numbers the contacts of a side.
     pub(crate) fn contacts(&self, side: &'static str, found: &[search::Contact]) -> Vec<Contact> {
-        let contact = |(k, found)| Contact::of(Spot::found(&self.pair, found, Place { side, number: k + 1 }));
+        let contact =
+            |(k, found)| Contact::of(Spot::found(&self.pair, found, FoundAt { side, number: k + 1 }));
         found.iter().copied().enumerate().map(contact).collect()
     }
 

@@ -151,8 +151,8 @@ impl Patch {
     ///
     /// Raises InputError for an empty patch and a spacing that is not positive; LimitError for too many cells.
     #[pyo3(signature = (spacing = None))]
-    fn axes<'py>(&self, py: Python<'py>, spacing: Option<Spacing>) -> PyResult<TwoAxes<'py>> {
-        let axes = self.grid(spacing.map(Spacing::steps)).or_raise()?;
+    fn axes<'py>(&self, py: Python<'py>, spacing: Option<GridStep>) -> PyResult<TwoAxes<'py>> {
+        let axes = self.grid(spacing.map(GridStep::steps)).or_raise()?;
         Ok((arrays::array(py, axes.xi), arrays::array(py, axes.eta)))
     }
 
@@ -199,10 +199,10 @@ impl Patch {
         &self,
         py: Python<'py>,
         cell: Option<f64>,
-        spacing: Option<Spacing>,
+        spacing: Option<GridStep>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let cell = cell.map(scene::pressure_cell).transpose().or_raise()?;
-        let site = self.grid(spacing.map(Spacing::steps)).and_then(|axes| self.site(axes)).or_raise()?;
+        let site = self.grid(spacing.map(GridStep::steps)).and_then(|axes| self.site(axes)).or_raise()?;
         let asked = AskedPressure { cell };
         let found = detached(py, || PartPressure::over_grid(&site, asked, self.modulus))?.or_raise()?;
         let [xi, eta] = [site.grid.xi, site.grid.eta];
@@ -229,9 +229,9 @@ impl Patch {
         &self,
         py: Python<'py>,
         format: Option<&str>,
-        spacing: Option<Spacing>,
+        spacing: Option<GridStep>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let axes = self.grid(spacing.map(Spacing::steps)).or_raise()?;
+        let axes = self.grid(spacing.map(GridStep::steps)).or_raise()?;
         let run = detached(py, || self.run(axes))?.or_raise()?;
         files(py, format, move |format| case::files(&run, format))
     }
@@ -280,12 +280,12 @@ type PatchParts = (Py<PyAny>, f64, Option<f64>, f64);
 
 /// Step of a grid in mm.
 #[derive(FromPyObject)]
-pub(crate) enum Spacing {
+pub(crate) enum GridStep {
     Both(f64),
     Each([f64; 2]),
 }
 
-impl Spacing {
+impl GridStep {
     fn steps(self) -> [f64; 2] {
         match self {
             Self::Both(step) => [step; 2],

@@ -15,8 +15,8 @@ pub(crate) struct Spot {
     /// What messages call it.
     pub(crate) name: String,
     /// Side and number of a contact that was found.
-    pub(crate) place: Option<Place>,
-    pub(crate) origin: Origin,
+    pub(crate) place: Option<FoundAt>,
+    pub(crate) origin: ContactOrigin,
     /// Position along the rail and gap at first touch \[mm\].
     pub(crate) y: f64,
     pub(crate) gap: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Spot {
 
 /// Where a contact comes from, and what makes it again.
 #[derive(Clone)]
-pub(crate) enum Origin {
+pub(crate) enum ContactOrigin {
     /// A search.
     Found(search::Contact),
     /// Chosen abscissae on rail and wheel \[mm\], and the skew \[rad\].
@@ -41,18 +41,18 @@ pub(crate) enum Origin {
 
 /// Where a contact was found.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct FoundAt {
     pub(crate) side: &'static str,
     /// From 1.
     pub(crate) number: usize,
 }
 
 impl Spot {
-    pub(crate) fn found(pair: &wheelrail::Pair, found: search::Contact, place: Place) -> Self {
+    pub(crate) fn found(pair: &wheelrail::Pair, found: search::Contact, place: FoundAt) -> Self {
         Self {
             name: format!("{} {}", place.side, place.number),
             place: Some(place),
-            origin: Origin::Found(found),
+            origin: ContactOrigin::Found(found),
             y: found.y,
             gap: found.gap,
             approach: None,
@@ -66,7 +66,7 @@ impl Spot {
         Self {
             name: "chosen".into(),
             place: None,
-            origin: Origin::Chosen(points),
+            origin: ContactOrigin::Chosen(points),
             y: 0.0,
             gap: 0.0,
             approach: None,
@@ -79,14 +79,16 @@ impl Spot {
     /// Takes over the contact of a case with this number.
     pub(crate) fn of_case(case: Py<PyAny>, number: usize, contact: PlacedContact) -> Self {
         let found = contact.found.as_ref();
-        let place = found
-            .map(|found| Place { side: found.side.map_or("single", TrackSide::name), number: found.contact });
+        let place = found.map(|found| FoundAt {
+            side: found.side.map_or("single", TrackSide::name),
+            number: found.contact,
+        });
         Self {
             name: contact.name(),
             place,
             y: found.map_or(0.0, |found| found.place.y_mm),
             gap: found.map_or(0.0, |found| found.place.gap_mm),
-            origin: Origin::OfCase(Arc::new(case), number),
+            origin: ContactOrigin::OfCase(Arc::new(case), number),
             approach: contact.approach,
             normal_load: contact.is_loaded().then(|| contact.normal_loads.iter().sum()),
             pair: contact.placement.pair(),
@@ -96,8 +98,8 @@ impl Spot {
 
     pub(crate) fn search(&self) -> Option<&search::Contact> {
         match &self.origin {
-            Origin::Found(found) => Some(found),
-            Origin::Chosen(_) | Origin::OfCase(..) => None,
+            ContactOrigin::Found(found) => Some(found),
+            ContactOrigin::Chosen(_) | ContactOrigin::OfCase(..) => None,
         }
     }
 
@@ -122,9 +124,9 @@ impl Spot {
     /// Those of comparing two cases.
     pub(crate) fn same(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
         let same = match (&self.origin, &other.origin) {
-            (Origin::Found(a), Origin::Found(b)) => a == b,
-            (Origin::Chosen(a), Origin::Chosen(b)) => a == b,
-            (Origin::OfCase(case, a), Origin::OfCase(other, b)) => {
+            (ContactOrigin::Found(a), ContactOrigin::Found(b)) => a == b,
+            (ContactOrigin::Chosen(a), ContactOrigin::Chosen(b)) => a == b,
+            (ContactOrigin::OfCase(case, a), ContactOrigin::OfCase(other, b)) => {
                 a == b && case.bind(py).eq(other.bind(py))?
             }
             _ => false,

@@ -39,12 +39,12 @@ pub(crate) struct Profile {
     pub(crate) profile: wheelrail::Profile,
     /// The body, where it is known.
     pub(crate) side: Option<Side>,
-    fitted: Option<Arc<Fitted>>,
+    fitted: Option<Arc<MeasuredFacts>>,
 }
 
 /// What is known of a measured profile.
 #[derive(Clone, Serialize, Deserialize)]
-struct Fitted {
+struct MeasuredFacts {
     /// What was done, as JSON.
     record: String,
     /// The same in a line.
@@ -78,7 +78,7 @@ type TwoColumns<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// An angle in rad, or a ratio such as "1:40".
 #[derive(FromPyObject)]
-pub(crate) enum Turn {
+pub(crate) enum AngleOrRatio {
     /// rad.
     Radians(f64),
     /// "1:n".
@@ -199,10 +199,10 @@ impl Profile {
     /// rad, or by a ratio such as "1:40", which leans a right-hand rail towards the track's centre.
     ///
     /// Raises InputError for an angle that is not finite and a text that is no ratio; warns of turns that are no inclination.
-    fn rotated(&self, py: Python<'_>, angle: Turn) -> PyResult<Self> {
+    fn rotated(&self, py: Python<'_>, angle: AngleOrRatio) -> PyResult<Self> {
         let rotation = match angle {
-            Turn::Radians(angle) => Rotation::Radians(angle),
-            Turn::Ratio(text) => Rotation::Ratio(text),
+            AngleOrRatio::Radians(angle) => Rotation::Radians(angle),
+            AngleOrRatio::Ratio(text) => Rotation::Ratio(text),
         };
         let turn = rotation.turn().map_err(|error| error.within("rotated")).or_raise()?;
         let written = if let Rotation::Radians(angle) = rotation { angle } else { turn.angle() };
@@ -369,7 +369,7 @@ impl Profile {
     pub(crate) fn measured(py: Python<'_>, measured: Measured, side: Option<Side>) -> PyResult<Self> {
         let Measured { profile, points, record } = measured;
         warn_of_points(py, &record.warnings)?;
-        let fitted = Fitted {
+        let fitted = MeasuredFacts {
             about: about_profile(&profile, Some(&record)),
             record: serde_json::to_string(&record).unwrap_or_default(),
             points: points.iter().map(measured::Point::xz).collect(),
@@ -379,9 +379,9 @@ impl Profile {
 
     /// Another place of the same profile; `point` moves its points there.
     fn moved(&self, profile: wheelrail::Profile, point: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
-        let moved = |fitted: &Arc<Fitted>| {
+        let moved = |fitted: &Arc<MeasuredFacts>| {
             let points = fitted.points.iter().copied().map(&point).collect();
-            Arc::new(Fitted { points, ..Fitted::clone(fitted) })
+            Arc::new(MeasuredFacts { points, ..MeasuredFacts::clone(fitted) })
         };
         Self { profile, side: self.side, fitted: self.fitted.as_ref().map(moved) }
     }
@@ -414,7 +414,7 @@ fn left_out(py: Python<'_>, parts: &[String]) -> PyResult<()> {
 /// Raises InputError for bytes that are none.
 #[pyfunction]
 pub(crate) fn profile_from_bytes(bytes: &[u8]) -> PyResult<Profile> {
-    let (profile, wheel, fitted): (_, Option<bool>, Option<Fitted>) =
+    let (profile, wheel, fitted): (_, Option<bool>, Option<MeasuredFacts>) =
         postcard::from_bytes(bytes).map_err(damaged)?;
     let side = wheel.map(|wheel| if wheel { Side::Wheel } else { Side::Rail });
     Ok(Profile { profile, side, fitted: fitted.map(Arc::new) })

@@ -5,8 +5,8 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{
-    ApproachBy, COLUMNS, ColumnArray, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, Tally,
-    curves,
+    ApproachBy, COLUMNS, ColumnArray, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, SweepColumns,
+    Tally, curves,
 };
 use wheelrail::search::{
     ONE_CONTACT, ParallelSweep, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over,
@@ -18,7 +18,7 @@ use crate::long::{Watch, watched};
 use crate::positions::Positions;
 
 /// What is asked of every position.
-pub(crate) struct Asked {
+pub(crate) struct AskedOfSweep {
     /// Largest vertical gap of a near miss that is reported \[mm\].
     pub(crate) within: f64,
     pub(crate) conicity: bool,
@@ -31,10 +31,10 @@ pub(crate) fn sweep<'py>(
     py: Python<'py>,
     (system, landmarks, radii): (&WheelsetOnTrack, &SideLandmarks, [f64; 2]),
     positions: Positions,
-    asked: Asked,
+    asked: AskedOfSweep,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Asked { within, conicity, ellipses } = asked;
+    let AskedOfSweep { within, conicity, ellipses } = asked;
     let count = positions.count;
     let (columns, tally) = watched(py, progress, |watch| {
         watch.at(0, positions.count);
@@ -42,16 +42,16 @@ pub(crate) fn sweep<'py>(
         let conicity = if conicity { conicity_over(system, &positions, &mut |_, _| {})? } else { None };
         let selection = Selection { within, apart: ONE_CONTACT };
         let sweep = ParallelSweep { system, selection, conicity: conicity.as_ref(), positions: &positions };
-        let mut all = (Columns::default(), Tally::default());
+        let mut all = (SweepColumns::default(), Tally::default());
         all.0.reserve(2 * positions.len());
         sweep.blocks(
-            |(columns, tally): &mut (Columns, Tally), number, rows| {
+            |(columns, tally): &mut (SweepColumns, Tally), number, rows| {
                 let push =
                     |(row, doubts): &(&_, ContactDoubts)| columns.push(number, row, ellipses, doubts.kinds());
                 tally.add(landmarks.of_rows(rows).inspect(push));
                 watch.go_on()
             },
-            |done, chunks: Vec<(Columns, Tally)>| {
+            |done, chunks: Vec<(SweepColumns, Tally)>| {
                 for (columns, tally) in &chunks {
                     all.0.extend(columns);
                     all.1.join(tally);
@@ -84,7 +84,7 @@ fn listed(positions: &Positions, watch: &Watch) -> wheelrail::Result<Vec<Positio
 }
 
 /// Gives the columns as NumPy arrays, which take over their memory.
-pub(crate) fn arrays_of(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
+pub(crate) fn arrays_of(py: Python<'_>, columns: SweepColumns) -> PyResult<Bound<'_, PyDict>> {
     let arrays = PyDict::new(py);
     for (name, array) in columns.into_arrays() {
         match array {
@@ -112,20 +112,20 @@ pub(crate) fn doubt_words() -> Vec<String> {
 /// Raises InputError for displacements that do not ascend.
 #[pyfunction]
 pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResult<String> {
-    let Drawn { columns, lateral, about } = Drawn::of(columns)?;
+    let DrawnPositions { columns, lateral, about } = DrawnPositions::of(columns)?;
     Ok(curves(&columns, &lateral, title, &about).or_raise()?.svg())
 }
 
 /// The positions of a table that a picture shows.
-pub(crate) struct Drawn {
-    pub(crate) columns: Columns,
+pub(crate) struct DrawnPositions {
+    pub(crate) columns: SweepColumns,
     /// Their lateral displacements \[mm\].
     pub(crate) lateral: Vec<f64>,
     /// What stands below the title.
     pub(crate) about: String,
 }
 
-impl Drawn {
+impl DrawnPositions {
     /// Chooses positions from the columns of a table, arrays by their names.
     pub(crate) fn of(columns: &Bound<'_, PyDict>) -> PyResult<Self> {
         let column = |name: &str| -> PyResult<Vec<f64>> {
@@ -144,7 +144,7 @@ impl Drawn {
         touching.dedup();
         let stride = touching.len().div_ceil(MOST_DRAWN).max(1);
         let drawn: Vec<f64> = touching.iter().step_by(stride).copied().collect();
-        let mut chosen = Columns::default();
+        let mut chosen = SweepColumns::default();
         let mut laterals = Vec::new();
         let mut next = 0;
         for row in 0..position.len() {

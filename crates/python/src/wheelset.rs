@@ -19,7 +19,7 @@ use crate::errors::{OrRaise, exception, warn};
 use crate::long::detached;
 use crate::pair::Pair;
 use crate::positions::{RollArgument, positions};
-use crate::sweep::{Asked, sweep};
+use crate::sweep::{AskedOfSweep, sweep};
 use crate::values::made;
 
 /// A wheelset on its track: a pair of profiles on the right, and its mirror image, or that of the pair `left`, on the left.
@@ -229,7 +229,7 @@ impl Wheelset {
         let within = scene::within(Some(within)).or_raise()?;
         warn(py, approach.and_then(|approach| usual::approach(self.pair.pair.rail(), approach, false)))?;
         let positions = positions(lateral, yaw, roll)?;
-        let asked = Asked { within, conicity, ellipses };
+        let asked = AskedOfSweep { within, conicity, ellipses };
         let radii = [self.left_pair(), &self.pair].map(|pair| pair.pair.wheel_radius());
         sweep(py, (&self.system, &self.landmarks, radii), positions, asked, progress.as_ref())
     }

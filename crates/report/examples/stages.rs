@@ -6,7 +6,7 @@
 use std::env;
 use std::error::Error;
 
-use wheelrail_report::rates::{Motion, sweep};
+use wheelrail_report::rates::{Freedoms, sweep};
 use wheelrail_report::whole_case::{CASES, PARTS, with_parts};
 
 /// Points of the grid along ξ and η.
@@ -22,6 +22,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     if PARTS.contains(&stage.as_str()) {
         return Ok(with_parts(case, SIDE, |run| (0..times).for_each(|_| run(stage)))?);
     }
-    let motion = Motion::ALL.into_iter().find(|motion| motion.name() == stage);
+    let motion = Freedoms::ALL.into_iter().find(|motion| motion.name() == stage);
     Ok(sweep(case == "measured", motion.ok_or("expected a part of a case or a sweep's motion")?, times)?)
 }

@@ -1,6 +1,6 @@
 //! Compares a method with the 60-digit values of a scene.
 
-use super::reference::{Reference, exact};
+use super::reference::{ReferenceFile, exact};
 use wheelrail::mesh::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::Placement;
@@ -48,7 +48,7 @@ impl ComparedPoint {
 /// with the same largest |η|. Strips are made if there are many columns. With as many columns as a grid has, the comparison
 /// is of that grid's own strips.
 pub fn compare(
-    reference: &Reference,
+    reference: &ReferenceFile,
     placement: &Placement,
     choice: &Choice,
     columns: usize,

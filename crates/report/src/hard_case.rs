@@ -4,7 +4,7 @@
 
 use serde::Deserialize;
 
-use super::reference::{Reference, embedded, malformed};
+use super::reference::{ReferenceFile, embedded, malformed};
 use wheelrail::error::Result;
 use wheelrail::patch::Window;
 use wheelrail::placement::Placement;
@@ -115,7 +115,7 @@ pub struct HardCase {
     pub relation: Option<Relation>,
     /// Scene and 60-digit values.
     #[serde(flatten)]
-    pub reference: Reference,
+    pub reference: ReferenceFile,
     /// Patches of the scene.
     pub patches: Vec<StatedPatch>,
 }

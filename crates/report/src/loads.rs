@@ -55,7 +55,7 @@ pub struct Loaded {
 
 /// One region of contact that carries a share of a load, with its approach estimated, and solved as if it were alone.
 #[derive(Debug, Clone)]
-pub struct Carried {
+pub struct CarriedRegion {
     /// The wheel.
     pub loaded: Loaded,
     /// Placement, patch, normal force and estimate.
@@ -151,7 +151,7 @@ impl Loaded {
     }
 }
 
-impl Carried {
+impl CarriedRegion {
     /// Returns the number of the contact, from 1.
     pub fn contact(&self) -> usize {
         self.site.contact.found.as_ref().map_or(1, |found| found.contact)
@@ -198,13 +198,13 @@ fn pairs() -> Result<Vec<Pair>> {
 ///
 /// # Errors
 /// A position without contact, which is a fault of this program.
-pub fn carried() -> Result<Vec<Carried>> {
+pub fn carried() -> Result<Vec<CarriedRegion>> {
     let mut out = Vec::new();
     for (name, pair) in PAIRS.into_iter().zip(pairs()?) {
         for [offset, yaw, load] in POSITIONS {
             let loaded = Loaded { pair: name, offset, yaw, load };
             for site in sites(&loaded.case(&pair)?)? {
-                let mut one = Carried { loaded, site, solved: NOTHING };
+                let mut one = CarriedRegion { loaded, site, solved: NOTHING };
                 one.solved = solved(&loaded.key(one.contact()))?;
                 out.push(one);
             }

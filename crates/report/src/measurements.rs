@@ -9,12 +9,12 @@ use super::conformal::{NormalGapFigures, normal_gap_figures};
 use super::errors::{Errors, compare};
 use super::hard_case::hard_cases;
 use super::hard_run::{self, HardOutcome};
-use super::loads::{self, ApproachError, Carried, LoadCost};
+use super::loads::{self, ApproachError, CarriedRegion, LoadCost};
 use super::measured;
 use super::practice::{self, PracticeRow};
 use super::processes::ProcessCost;
 use super::rates::{Extent, Rate, rates};
-use super::reference::{Reference, references};
+use super::reference::{ReferenceFile, references};
 use super::speed::{LEAST_RUNS, RaceTrack, TimedWork, Timing, race};
 use super::spline_cost::{SplineCost, spline_costs};
 use super::verification::{Subject, Verified, built_in_pairs, verify};
@@ -197,7 +197,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     progress("the normal gap");
     let normal_gap = one.install(|| normal_gap_figures(&effort.sides, effort.seconds))?;
     progress("loads");
-    let loads = loads::carried()?.iter().map(Carried::compared).collect();
+    let loads = loads::carried()?.iter().map(CarriedRegion::compared).collect();
     let load_costs = one.install(|| loads::costs(effort.seconds))?;
     progress("the check by parry3d's meshes");
     let verified = verified(&references, effort.every_pair)?;
@@ -223,7 +223,7 @@ pub fn measure(effort: &Effort, progress: &mut dyn FnMut(&str)) -> Result<Measur
     })
 }
 
-fn verified(references: &[Reference], every_pair: usize) -> Result<[Vec<Verified>; 2]> {
+fn verified(references: &[ReferenceFile], every_pair: usize) -> Result<[Vec<Verified>; 2]> {
     let mut scenes = Vec::new();
     for reference in references {
         let subject = Subject::of_reference(reference)?;
@@ -240,7 +240,7 @@ fn pool(threads: usize) -> Result<ThreadPool> {
     })
 }
 
-fn example(references: &[Reference]) -> Result<&Reference> {
+fn example(references: &[ReferenceFile]) -> Result<&ReferenceFile> {
     references.iter().find(|reference| reference.name == EXAMPLE).ok_or_else(|| {
         Error::new("reference scenes", "no example", EXAMPLE, "restore crates/report/src/reference")
     })
@@ -248,7 +248,7 @@ fn example(references: &[Reference]) -> Result<&Reference> {
 
 /// Returns the grid over the window of the scene's own points, so that spectral columns are the same
 /// polynomials as at these points.
-fn track<'a>(reference: &Reference, placement: &'a Placement, side: usize) -> RaceTrack<'a> {
+fn track<'a>(reference: &ReferenceFile, placement: &'a Placement, side: usize) -> RaceTrack<'a> {
     let [xi, eta] = reference.scene.axes();
     let reach = eta.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let ends = [xi.first(), xi.last()].map(|v| v.copied().unwrap_or(0.0));
@@ -270,12 +270,12 @@ fn contestants() -> Vec<(&'static str, Option<f64>, Option<Method>)> {
 
 /// Returns the rows of all scenes and grids, and the least, median and largest time of a plan \[s\].
 fn scene_races(
-    references: &[Reference],
+    references: &[ReferenceFile],
     effort: &Effort,
     one: &ThreadPool,
     progress: &mut dyn FnMut(&str),
 ) -> Result<(Vec<AccuracyRow>, [f64; 3])> {
-    let placements = references.iter().map(Reference::placement).collect::<Result<Vec<_>>>()?;
+    let placements = references.iter().map(ReferenceFile::placement).collect::<Result<Vec<_>>>()?;
     let (mut rows, mut planning) = (Vec::new(), Vec::new());
     for &side in &effort.sides {
         progress(&format!("grid {side} x {side}, errors of {} scenes", references.len()));
@@ -299,7 +299,7 @@ fn scene_races(
 
 /// All contestants over one scene and grid.
 struct SceneRace<'a> {
-    reference: &'a Reference,
+    reference: &'a ReferenceFile,
     placement: &'a Placement,
     side: usize,
     works: Vec<TimedWork>,
@@ -311,7 +311,7 @@ struct SceneRace<'a> {
 
 impl<'a> SceneRace<'a> {
     /// Makes the plans and errors; no contestant has run yet.
-    fn new(reference: &'a Reference, placement: &'a Placement, side: usize) -> Self {
+    fn new(reference: &'a ReferenceFile, placement: &'a Placement, side: usize) -> Self {
         let track = track(reference, placement, side);
         let planned = |tolerance, method| plan(placement, track.xi(), track.axis(), tolerance, method).choice;
         let (mut works, mut rows) = (Vec::new(), Vec::new());
@@ -343,7 +343,7 @@ impl<'a> SceneRace<'a> {
     }
 }
 
-fn growth(reference: &Reference, effort: &Effort) -> Result<Vec<Growth>> {
+fn growth(reference: &ReferenceFile, effort: &Effort) -> Result<Vec<Growth>> {
     let placement = reference.placement()?;
     let mut tracks: Vec<_> = effort.growth.iter().map(|&side| track(reference, &placement, side)).collect();
     let works: Vec<_> = tracks
@@ -366,7 +366,7 @@ fn growth(reference: &Reference, effort: &Effort) -> Result<Vec<Growth>> {
     Ok(rows.collect())
 }
 
-fn threads(reference: &Reference, effort: &Effort) -> Result<Vec<Threads>> {
+fn threads(reference: &ReferenceFile, effort: &Effort) -> Result<Vec<Threads>> {
     let placement = reference.placement()?;
     let pools = [pool(1)?, pool(2)?];
     let side = effort.sides.iter().copied().max().unwrap_or(2);

@@ -41,7 +41,7 @@ impl Extent {
 
 /// The freedoms of a sweep's wheelset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum Freedoms {
     /// Lateral displacement, with the roll neglected as in EN 15302.
     Lateral,
     /// Lateral displacement, with the roll solved.
@@ -50,7 +50,7 @@ pub enum Motion {
     Yawing,
 }
 
-impl Motion {
+impl Freedoms {
     /// All motions.
     pub const ALL: [Self; 3] = [Self::Lateral, Self::Rolling, Self::Yawing];
 
@@ -80,7 +80,7 @@ pub struct Rate {
     /// Whether the pair is measured.
     pub measured: bool,
     /// Freedoms of the wheelset.
-    pub motion: Motion,
+    pub motion: Freedoms,
     /// Number of positions of the sweep, and how many of them have a contact.
     pub positions: [usize; 2],
     /// Shortest time of a sweep with its table of conicity \[s\].
@@ -114,7 +114,7 @@ pub fn rates(extent: &Extent, seconds: f64) -> Result<Vec<Rate>> {
             systems.push((format!("worn, {points} points, {noise} µm, {curve}"), true, system(pair)?));
         }
     }
-    let contestants = systems.iter().flat_map(|system| Motion::ALL.map(|motion| (system, motion)));
+    let contestants = systems.iter().flat_map(|system| Freedoms::ALL.map(|motion| (system, motion)));
     let mut rows = Vec::new();
     let mut tracks = Vec::new();
     for ((pair, measured, system), motion) in contestants {
@@ -146,7 +146,7 @@ pub fn rates(extent: &Extent, seconds: f64) -> Result<Vec<Rate>> {
 }
 
 /// Runs one sweep with its table of conicity.
-fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Rate) -> Result<()> {
+fn swept(system: &WheelsetOnTrack, motion: Freedoms, extent: &Extent, row: &mut Rate) -> Result<()> {
     let Extent { positions, amplitude, .. } = *extent;
     let mut table = None;
     let seconds = timed(|| table = Some(Conicity::new(system, amplitude, motion.at(0.0).roll)));
@@ -171,7 +171,7 @@ fn swept(system: &WheelsetOnTrack, motion: Motion, extent: &Extent, row: &mut Ra
 ///
 /// # Errors
 /// As [`rates`].
-pub fn sweep(measured: bool, motion: Motion, positions: usize) -> Result<()> {
+pub fn sweep(measured: bool, motion: Freedoms, positions: usize) -> Result<()> {
     let [spacing, noise] = INSTRUMENTS[0];
     let pair = if measured { worn(spacing, noise, CurveKind::Smoothing)?.1 } else { drawn()? };
     let system = system(pair)?;

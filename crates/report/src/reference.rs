@@ -13,7 +13,7 @@ const RESIDUE: f64 = 1e-40;
 
 /// A scene and its values, from one file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Reference {
+pub struct ReferenceFile {
     /// Name of the file, without its ending.
     #[serde(skip)]
     pub name: String,
@@ -162,7 +162,7 @@ impl ReferenceScene {
     }
 }
 
-impl Reference {
+impl ReferenceFile {
     /// Reads the text of a file.
     ///
     /// # Errors
@@ -210,6 +210,6 @@ pub const FILES: &[(&str, &str)] = embedded!("reference/":
 ///
 /// # Errors
 /// A file that is not in the format.
-pub fn references() -> Result<Vec<Reference>> {
-    FILES.iter().map(|(name, text)| Reference::read(name, text)).collect()
+pub fn references() -> Result<Vec<ReferenceFile>> {
+    FILES.iter().map(|(name, text)| ReferenceFile::read(name, text)).collect()
 }

@@ -3,7 +3,7 @@
 use super::conformal::cost::GapCost;
 use super::loads::LoadCost;
 use super::measurements::{AccuracyRow, Growth, Measurements, median};
-use super::rates::{Motion, Rate};
+use super::rates::{Freedoms, Rate};
 use super::spline_cost::SplineCost;
 use wheelrail::separation::{FULL_PRECISION, Method};
 
@@ -18,8 +18,8 @@ const SPLINES_OVER_ARCS: f64 = 2.0;
 /// Largest time of a point of a splined grid, with its plan \[ns\].
 const SPLINED_POINT: f64 = 6.0;
 /// Least positions a second on one core, as (motion, of drawn arcs, of measured pairs).
-const RATES: [(Motion, f64, f64); 3] =
-    [(Motion::Lateral, 1e6, 2e4), (Motion::Rolling, 2e5, 1e4), (Motion::Yawing, 1e5, 5e3)];
+const RATES: [(Freedoms, f64, f64); 3] =
+    [(Freedoms::Lateral, 1e6, 2e4), (Freedoms::Rolling, 2e5, 1e4), (Freedoms::Yawing, 1e5, 5e3)];
 /// Largest rate of drawn arcs over that of a measured pair.
 const DRAWN_OVER_MEASURED: f64 = 3.0;
 /// Largest time of the table of conicity to ±10 mm of a measured pair \[s\].
@@ -110,7 +110,7 @@ fn at_most(what: impl Into<String>, bound: f64, found: f64, remark: String) -> R
 }
 
 /// Judges the rates of drawn arcs and of the slowest measured pair, and the ratio of the two.
-fn rates(m: &Measurements, motion: Motion, [drawn, measured]: [f64; 2]) -> Vec<Requirement> {
+fn rates(m: &Measurements, motion: Freedoms, [drawn, measured]: [f64; 2]) -> Vec<Requirement> {
     let slowest = |of_measured: bool| {
         let rows = m.rates.iter().filter(|row| row.motion == motion && row.measured == of_measured);
         rows.min_by(|a, b| a.rate().total_cmp(&b.rate()))

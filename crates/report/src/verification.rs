@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::inclined::RADIUS;
-use super::reference::Reference;
+use super::reference::ReferenceFile;
 use wheelrail::Interval;
 use wheelrail::error::Result;
 use wheelrail::patch::Window;
@@ -47,8 +47,8 @@ impl Subject {
     /// Makes the subject of a reference scene: the window of its values, and its first approach.
     ///
     /// # Errors
-    /// The errors of [`Reference::placement`].
-    pub fn of_reference(reference: &Reference) -> Result<Self> {
+    /// The errors of [`ReferenceFile::placement`].
+    pub fn of_reference(reference: &ReferenceFile) -> Result<Self> {
         let [xi, eta] = reference.scene.axes();
         let reach = eta.last().copied().unwrap_or(0.0);
         let approach = reference.scene.delta.first().copied().unwrap_or(0.0);

@@ -55,7 +55,7 @@ impl ContactSettings {
 pub fn contact_inp(deck: &Deck<'_>, settings: &ContactSettings, sink: &mut dyn Write) -> io::Result<()> {
     let mut block = Block::new(sink);
     block.bytes(comments(deck, settings).as_bytes())?;
-    block.bytes(control(&deck.lattice(), settings, Reference::Plane).as_bytes())?;
+    block.bytes(control(&deck.lattice(), settings, DistanceSurface::Plane).as_bytes())?;
     for i in 0..deck.xi.len() {
         rows(&mut block, deck.column(i))?;
     }
@@ -83,7 +83,7 @@ const ROUNDS: u32 = 20;
 
 /// The surface over which CONTACT's distances are given.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Reference<'a> {
+pub(super) enum DistanceSurface<'a> {
     /// The tangent plane.
     Plane,
     /// A surface that is curved along y, with the lines of its inclinations.
@@ -102,7 +102,7 @@ fn comments(deck: &Deck<'_>, settings: &ContactSettings) -> String {
     lines.iter().map(|line| format!("% {line}\n")).collect()
 }
 
-pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Reference<'_>) -> String {
+pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: DistanceSurface<'_>) -> String {
     let (force, normal) = match settings.normal {
         Prescribed::Force(force) => (1, force),
         Prescribed::Approach(approach) => (0, approach),
@@ -117,8 +117,8 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Ref
     );
     // The digit C is 2 for a half-space, and 4 for a body whose surface is curved along y.
     let (influence, inclinations) = match reference {
-        Reference::Plane => (2, ""),
-        Reference::Curved(inclinations) => (4, inclinations),
+        DistanceSurface::Plane => (2, ""),
+        DistanceSurface::Curved(inclinations) => (4, inclinations),
     };
     // The digit E is 9 where the slip of every element follows the distances.
     let extra = if influence == 4 && tangential == 3 { 9 } else { 0 };

@@ -22,7 +22,7 @@
 use super::super::block::Block;
 use super::super::curved::CurvedFields;
 use super::super::model::{Header, even_step, known};
-use super::contact::{ContactSettings, Prescribed, Reference, control, rows};
+use super::contact::{ContactSettings, DistanceSurface, Prescribed, control, rows};
 use super::number::{WIDTH, field};
 use super::text::{Lattice, line};
 use super::wrp::head;
@@ -156,7 +156,7 @@ pub fn contact_curved_inp(
     let settings = ContactSettings { normal: Prescribed::Approach(0.0), ..*settings };
     let count = [fields.sigma().len(), grid.eta().len()];
     let lattice = Lattice { count, first: deck.first(), steps: deck.steps };
-    let reference = Reference::Curved(&inclinations);
+    let reference = DistanceSurface::Curved(&inclinations);
     block.bytes(control(&lattice, &settings, reference).as_bytes())?;
     let fill = grid.fill_value();
     for i in 0..fields.sigma().len() {

@@ -3,7 +3,7 @@
 use super::super::model::plain;
 use super::text::line;
 use crate::numerics::interval::Interval;
-use crate::table::{COEFFICIENTS, ContactTable, Lacks, Part, TOLERANCE_LENGTH, YAW_COEFFICIENTS};
+use crate::table::{COEFFICIENTS, ContactTable, Lacks, PlanePart, TOLERANCE_LENGTH, YAW_COEFFICIENTS};
 
 /// Writes `table.wrp`; `title` is that of its scene.
 pub fn table_wrp(table: &ContactTable, title: &str) -> String {
@@ -63,8 +63,8 @@ fn put_tree(text: &mut String, table: &ContactTable) {
     for fork in table.forks() {
         for part in fork.parts {
             let code = match part {
-                Part::Fork(fork) => (fork + 1).to_string(),
-                Part::Cell(cell) => format!("-{}", cell + 1),
+                PlanePart::Fork(fork) => (fork + 1).to_string(),
+                PlanePart::Cell(cell) => format!("-{}", cell + 1),
             };
             *text += &format!("{code:>8}");
         }

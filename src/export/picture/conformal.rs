@@ -1,7 +1,7 @@
 //! Draws the picture of a gap over the rail's surface for a report: both profiles with the rail's normals, the gap along
 //! these normals magnified, and the unrolled surface with lines of equal gap and the conformal patch.
 
-use super::contact::{APPROACH, Closing, PicturedContact, RAIL, SHOWN_GAP, WHEEL, WINDOW, overlaps};
+use super::contact::{APPROACH, ClosingPlace, PicturedContact, RAIL, SHOWN_GAP, WHEEL, WINDOW, overlaps};
 use super::contour::Nodes;
 use super::map::Map;
 use super::page::{GREY, INSIDE, Page, Pen, RED, SMALL, polygon};
@@ -142,12 +142,12 @@ impl ConformalPicture<'_> {
         let all = || rail.iter().chain(&wheel).chain(&closed);
         let [u, v] = [0, 1].map(|k| airy(range(all().map(|p| p[k])), AIR[k], 0.0));
         let panel = Panel::true_scale(room, u, v);
-        let closing = |(normal, &closed): (&RailNormal, &[f64; 2])| Closing {
+        let closing = |(normal, &closed): (&RailNormal, &[f64; 2])| ClosingPlace {
             wheel: normal.point(fan.factor * normal.gap),
             closed,
             overlap: approach * normal.cosine() - normal.gap,
         };
-        let closings: Vec<Closing> = self.normals.iter().zip(&closed).map(closing).collect();
+        let closings: Vec<ClosingPlace> = self.normals.iter().zip(&closed).map(closing).collect();
         page.area(&overlaps(&panel, &closings), INSIDE);
         self.rays(page, &panel, &fan);
         page.lines(&panel.curve(&rail), RAIL);

@@ -98,7 +98,7 @@ impl PicturedContact<'_> {
 
 /// A place along a gap with an approach \[mm\], in the coordinates of a panel.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Closing {
+pub(super) struct ClosingPlace {
     /// The wheel.
     pub(super) wheel: [f64; 2],
     /// Where the approach closes the gap.
@@ -109,8 +109,8 @@ pub(super) struct Closing {
 
 /// Returns the areas on the page between the wheel and the approach where they overlap, stretch by stretch. Stretches with an
 /// undefined end have none.
-pub(super) fn overlaps(panel: &Panel, along: &[Closing]) -> Vec<Vec<[f64; 2]>> {
-    let area = |pair: &[Closing]| {
+pub(super) fn overlaps(panel: &Panel, along: &[ClosingPlace]) -> Vec<Vec<[f64; 2]>> {
+    let area = |pair: &[ClosingPlace]| {
         let [a, b] = [pair[0], pair[1]];
         let share = a.overlap / (a.overlap - b.overlap);
         let at = [0, 1].map(|k| a.closed[k] + (b.closed[k] - a.closed[k]) * share);

@@ -25,7 +25,7 @@ const CLEAR: f64 = 9.0;
 const APART: f64 = 60.0;
 
 /// The lines of one level.
-pub(super) struct Level {
+pub(super) struct LevelLines {
     pub(super) name: String,
     /// The power of ten in which the name is written.
     pub(super) power: i32,
@@ -36,7 +36,7 @@ pub(super) struct Level {
 
 /// Returns round levels. They go up to the largest value, or up to [`SHOWN`] times the approach if that is lower and above
 /// the least value.
-pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Level> {
+pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<LevelLines> {
     let [low, high] = extremes(nodes.values.iter().copied()).ends();
     let shown = SHOWN * approach;
     let high = if approach > 0.0 && shown > low { high.min(shown) } else { high };
@@ -57,14 +57,14 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
         let pen = Pen::new(shade((value - low) / (high - low)), 1.2);
         let pen = if k < 0 { pen.dashed([4.0, 3.0]) } else { pen };
         let lines = nodes.lines(value).iter().flat_map(|line| panel.curve(line)).collect();
-        Level { name: number(value / unit, step / unit), power, pen, lines }
+        LevelLines { name: number(value / unit, step / unit), power, pen, lines }
     };
     (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
 }
 
 /// Writes each level's number where its line is farthest from all others and from the numbers written before. The closed rings
 /// around the patch are on the page, as the lines are.
-pub(super) fn label(page: &mut Page, levels: &[Level], rings: &[Vec<[f64; 2]>], panel: &Panel) {
+pub(super) fn label(page: &mut Page, levels: &[LevelLines], rings: &[Vec<[f64; 2]>], panel: &Panel) {
     let mut placed: Vec<[f64; 2]> = Vec::new();
     for (number, level) in levels.iter().enumerate() {
         let size = [NUMBERS.size * DIGIT * level.name.chars().count() as f64 + 3.0, NUMBERS.size + 1.0];

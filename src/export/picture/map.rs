@@ -1,7 +1,7 @@
 //! Draws a map: lines of equal gap over the solver's cells with the patch and its boundary, to scale, with units and a key.
 
 use super::contour::Nodes;
-use super::levels::{self, Level};
+use super::levels::{self, LevelLines};
 use super::page::{BODY, INSIDE, Page, Pen, RED, SMALL};
 use super::panel::{Panel, extremes, in_power, number, range, significant};
 
@@ -18,7 +18,7 @@ const ON_EDGE: f64 = 1e-6;
 
 /// The true contact inside a patch.
 #[derive(Debug, Clone, Copy)]
-pub struct Pressed<'a> {
+pub struct TrueContact<'a> {
     /// Its edges, lines in \[ξ, η\] \[mm\].
     pub edges: &'a [Vec<[f64; 2]>],
     /// The largest pressure \[N/mm²\].
@@ -41,7 +41,7 @@ pub(super) struct Map<'a> {
     /// The boundary of the patch: closed loops of \[u, η\] \[mm\], whose first points are not repeated.
     pub(super) loops: Vec<Vec<[f64; 2]>>,
     /// The true contact, over ξ; `None` where no pressures were solved.
-    pub(super) pressed: Option<Pressed<'a>>,
+    pub(super) pressed: Option<TrueContact<'a>>,
     /// Approach δ \[mm\].
     pub(super) approach: f64,
 }
@@ -101,7 +101,7 @@ impl Map<'_> {
     }
 
     /// Writes what the lines mean, beside them.
-    fn key(&self, page: &mut Page, [side, top]: [f64; 2], levels: &[Level]) {
+    fn key(&self, page: &mut Page, [side, top]: [f64; 2], levels: &[LevelLines]) {
         let mut row = top;
         let power = levels.first().map_or(0, |level| level.power);
         page.text([side, row], in_power(&format!("{} [mm]", self.gap), power), BODY);
@@ -114,7 +114,7 @@ impl Map<'_> {
             page.legend([side, row], BOUNDARY, &format!("boundary {}", self.boundary));
             row += 32.0;
         }
-        if let Some(Pressed { largest, .. }) = self.pressed {
+        if let Some(TrueContact { largest, .. }) = self.pressed {
             page.legend([side, row - 10.0], PRESSED, "true contact");
             page.text([side, row + 8.0], format!("p ≤ {} N/mm²", number(largest, 1.0)), SMALL);
             row += 40.0;

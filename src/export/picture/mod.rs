@@ -21,7 +21,7 @@ pub use conformal::{ConformalPicture, RailNormal};
 pub use contact::PicturedContact;
 pub use contour::Nodes;
 pub use curves::{CurvesMap, CurvesPanel, CurvesPicture, JoinedPair, PlottedCurve, jumps};
-pub use map::Pressed;
+pub use map::TrueContact;
 pub use overlay::OverlayPicture;
 pub use page::SEPARATOR;
 pub use patch::PatchPicture;

@@ -2,9 +2,9 @@
 //! of equal separation with the boundary over the solver's cells, to scale, with units and a legend.
 
 use super::super::model::Loop;
-use super::contact::{APPROACH, Closing, PicturedContact, RAIL, SHOWN_GAP, WHEEL, WINDOW, overlaps};
+use super::contact::{APPROACH, ClosingPlace, PicturedContact, RAIL, SHOWN_GAP, WHEEL, WINDOW, overlaps};
 use super::contour::Nodes;
-use super::map::{Map, Pressed};
+use super::map::{Map, TrueContact};
 use super::page::{INSIDE, Page};
 use super::panel::{Panel, airy, range, significant};
 
@@ -25,7 +25,7 @@ pub struct PatchPicture<'a> {
     /// The boundary of the patch.
     pub loops: &'a [Loop],
     /// The true contact; `None` where no pressures were solved.
-    pub pressed: Option<Pressed<'a>>,
+    pub pressed: Option<TrueContact<'a>>,
 }
 
 impl PatchPicture<'_> {
@@ -60,8 +60,11 @@ impl PatchPicture<'_> {
         let panel = Panel { place: room, u, v: airy(v, 0.08, 0.0) };
         let [a, b] = panel.scale();
         page.heading(room, &format!("Gap at η = 0 over the rail, heights × {}", significant(b / a, 2)));
-        let closing =
-            |&[xi, s]: &[f64; 2]| Closing { wheel: [xi, s], closed: [xi, approach], overlap: approach - s };
+        let closing = |&[xi, s]: &[f64; 2]| ClosingPlace {
+            wheel: [xi, s],
+            closed: [xi, approach],
+            overlap: approach - s,
+        };
         page.area(&overlaps(&panel, &self.midplane.iter().map(closing).collect::<Vec<_>>()), INSIDE);
         page.lines(&panel.curve(&u.ends().map(|u| [u, 0.0])), RAIL);
         page.lines(&panel.curve(self.midplane), WHEEL);

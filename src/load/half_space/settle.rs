@@ -23,7 +23,7 @@ pub(super) struct System {
 
 /// What conjugate gradients found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Settled {
+pub(super) struct SettledPressures {
     /// Largest violation of contact's conditions, relative to the approach of its region.
     pub violation: f64,
     /// Steps taken.
@@ -31,7 +31,7 @@ pub(super) struct Settled {
 }
 
 /// The vectors of a search, for all cells of all regions.
-struct Search {
+struct SolverVectors {
     /// u(p) − depth \[mm\]: 0 where pressed, ≥ 0 elsewhere at the end.
     residual: Vec<f64>,
     /// The direction, and the displacements that it causes.
@@ -46,13 +46,13 @@ impl System {
     /// It ends when no condition is violated by more than `tolerance` of its region's approach. By Betti the load then errs
     /// by less than `tolerance` · d ln F/d ln δ, which is 3/2 for an ellipse.
     /// Cost: a product for each step, and two where cells lose or gain contact.
-    pub fn settle(&mut self, depth: &[f64], pressure: &mut [f64], tolerance: f64) -> Settled {
+    pub fn settle(&mut self, depth: &[f64], pressure: &mut [f64], tolerance: f64) -> SettledPressures {
         let mut search = self.begin(depth, pressure);
         let (mut before, mut steps) = (f64::INFINITY, 0);
         loop {
             let violation = self.violation(&search.residual, pressure, depth);
             if violation <= tolerance || steps == MOST_STEPS {
-                return Settled { violation, steps };
+                return SettledPressures { violation, steps };
             }
             steps += 1;
             let square = self.product(&search.residual, &search.residual, pressure);
@@ -63,7 +63,7 @@ impl System {
             let rise = self.product(&search.direction, &search.residual, pressure);
             let length = rise / self.product(&search.direction, &search.response, pressure);
             if !length.is_finite() {
-                return Settled { violation, steps };
+                return SettledPressures { violation, steps };
             }
             let [moved, joined] = step(pressure, &search, depth, length);
             if moved {
@@ -77,7 +77,7 @@ impl System {
     }
 
     /// Scales the pressures of every region to its depth, and gives their residual.
-    fn begin(&mut self, depth: &[f64], pressure: &mut [f64]) -> Search {
+    fn begin(&mut self, depth: &[f64], pressure: &mut [f64]) -> SolverVectors {
         let count = depth.len();
         let mut residual = vec![0.0; count];
         for (k, cells) in self.ranges().into_iter().enumerate() {
@@ -93,7 +93,7 @@ impl System {
         }
         self.add_far(pressure, &mut residual);
         residual.iter_mut().zip(depth).for_each(|(g, depth)| *g -= depth);
-        Search { residual, direction: vec![0.0; count], response: vec![0.0; count] }
+        SolverVectors { residual, direction: vec![0.0; count], response: vec![0.0; count] }
     }
 
     /// Gives where the cells of every region are in the vectors.
@@ -173,7 +173,7 @@ fn guess(depth: &[f64], pressure: &mut [f64]) {
 
 /// Steps along the direction. Tells whether a cell lost or gained contact, and whether one gained it: one without pressure that
 /// still overlaps is pressed.
-fn step(pressure: &mut [f64], search: &Search, depth: &[f64], length: f64) -> [bool; 2] {
+fn step(pressure: &mut [f64], search: &SolverVectors, depth: &[f64], length: f64) -> [bool; 2] {
     let [mut moved, mut joined] = [false; 2];
     let each = pressure.iter_mut().zip(&search.direction).zip(&search.residual).zip(depth);
     for (((p, t), g), depth) in each {

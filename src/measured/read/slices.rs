@@ -29,7 +29,7 @@ const LEAST_APART: f64 = 1e-3;
 
 /// One slice of a list.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Slice {
+pub struct ListedSlice {
     /// Position: along the track \[mm\], or around the wheel \[rad\].
     pub at: f64,
     /// File of the slice, relative to the list.
@@ -47,7 +47,7 @@ pub struct SliceList {
     /// Body of the slices.
     pub side: Side,
     /// The slices by ascending position.
-    pub slices: Vec<Slice>,
+    pub slices: Vec<ListedSlice>,
     /// Whether the file asks for a spline near its slices, not through them (method 2).
     pub approximated: bool,
     /// What the file says and this program does not use.
@@ -123,18 +123,18 @@ fn method(row: &Group<'_>) -> Result<(bool, Vec<Note>)> {
     Ok((method == 2, vec![Note { line: row.line.number, text }]))
 }
 
-fn slice(row: &Group<'_>, position: impl Fn(f64) -> f64) -> Result<Slice> {
+fn slice(row: &Group<'_>, position: impl Fn(f64) -> f64) -> Result<ListedSlice> {
     let at = position(row.number(0, "a position")?);
     let file = unquoted(row.words[1].1);
     if file.is_empty() || is_number(file) {
         let expected = "the file of the slice, in single quotes";
         return Err(row.error(1, format!("\"{}\"", clipped(row.words[1].1)), expected, "name it"));
     }
-    Ok(Slice { at, file: file.into(), features: Vec::new(), line: row.line.number })
+    Ok(ListedSlice { at, file: file.into(), features: Vec::new(), line: row.line.number })
 }
 
 /// Rejects positions that do not ascend, and wheels that are more than once around.
-fn check_positions(slices: &[Slice], side: Side) -> Result<()> {
+fn check_positions(slices: &[ListedSlice], side: Side) -> Result<()> {
     use std::f64::consts::PI;
     /// What files with three or four digits of π leave open \[rad\].
     const DIGITS: f64 = 1e-4;

@@ -23,7 +23,7 @@ fn cut(list: &str, along: f64, files: &[(&str, Vec<u8>)], more: &str) -> Result<
     let options =
         Options { along: Some(along), ..options(&format!("mirror = false\nflip_z = false\n{more}")) };
     let list = SliceList::read(list.as_bytes(), Side::Rail)?;
-    let cut = Cut::new(&list, &options)?;
+    let cut = SectionOfList::new(&list, &options)?;
     let contents: Vec<_> = files.iter().filter(|file| cut.files().contains(&file.0)).cloned().collect();
     section("list.slcs", &cut, &contents, Side::Rail, &options)
 }
@@ -107,7 +107,7 @@ fn a_wheel_is_periodic_and_round_outside_its_list() -> Result<()> {
     let text = "0 1\n2\n0\n2\n0.3 'round.txt'\n0.4 'flat.txt'\n";
     let list = SliceList::read(text.as_bytes(), Side::Wheel)?;
     let files = |angle: f64| -> Result<Vec<String>> {
-        let cut = Cut::new(&list, &Options { angle: Some(angle), ..Options::default() })?;
+        let cut = SectionOfList::new(&list, &Options { angle: Some(angle), ..Options::default() })?;
         Ok(cut.files().into_iter().map(String::from).collect())
     };
     assert_eq!(files(0.0)?, ["round.txt"]);

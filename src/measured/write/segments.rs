@@ -25,13 +25,13 @@ pub struct Segments {
 /// The errors of [`segments`].
 pub fn chain(profile: &Profile) -> Result<(String, Vec<String>)> {
     #[derive(Serialize)]
-    struct File<'a> {
+    struct SegmentsFile<'a> {
         name: &'a str,
         source: &'a str,
         segments: Vec<SegmentData>,
     }
     let Segments { segments, cut } = segments(profile)?;
-    let file = File { name: &profile.name, source: &profile.source, segments };
+    let file = SegmentsFile { name: &profile.name, source: &profile.source, segments };
     let text = toml::to_string(&file).map_err(|error| {
         Error::new("segments", error.to_string(), "segments that TOML can hold", "report this")
     })?;

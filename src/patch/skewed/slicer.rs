@@ -5,7 +5,7 @@
 //! next.
 
 use super::circle::BESIDE;
-use super::valleys::{Spot, Valleys};
+use super::valleys::{ValleySpot, Valleys};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::Placement;
@@ -73,7 +73,7 @@ impl<'a> Skewed<'a> {
     }
 
     /// Returns s − δ at a place of a valley or ridge that is already known \[mm\].
-    pub(in crate::patch) fn depth_at(&mut self, xi: f64, spot: &Spot) -> f64 {
+    pub(in crate::patch) fn depth_at(&mut self, xi: f64, spot: &ValleySpot) -> f64 {
         self.valleys.separation(&mut self.evaluator, xi, spot) - self.approach
     }
 

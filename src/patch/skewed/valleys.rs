@@ -34,7 +34,7 @@ const SECANTS: usize = 8;
 
 /// The place of a valley or ridge at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Spot {
+pub(crate) struct ValleySpot {
     /// η \[mm\].
     pub(crate) eta: f64,
     /// ζ of the wheel \[mm\].
@@ -83,7 +83,7 @@ impl<'a> Valleys<'a> {
     }
 
     /// Returns the place of a valley or ridge at ξ, which must lie inside its interval.
-    pub(crate) fn spot(&self, crease: usize, xi: f64) -> Spot {
+    pub(crate) fn spot(&self, crease: usize, xi: f64) -> ValleySpot {
         let legs = &self.creases[crease].legs;
         let leg = &legs[legs.partition_point(|leg| leg.xi[1] < xi).min(legs.len() - 1)];
         let (circle, t) = match leg.piece {
@@ -91,7 +91,7 @@ impl<'a> Valleys<'a> {
             None => (leg.circle, self.turn(leg, xi)),
         };
         let [eta, height] = [self.turned.place(&circle, t).eta, self.turned.height(&circle, t)];
-        Spot { eta, height, on_circle: leg.piece.is_none() }
+        ValleySpot { eta, height, on_circle: leg.piece.is_none() }
     }
 
     /// Returns t at which the line of constant ξ meets a leg on a circle.
@@ -144,7 +144,7 @@ impl<'a> Valleys<'a> {
     }
 
     /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
-    pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &Spot) -> f64 {
+    pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &ValleySpot) -> f64 {
         let own = spot.height - evaluator.rail_height(xi);
         let s = if spot.on_circle { f64::NAN } else { evaluator.separation(xi, spot.eta) };
         if s.is_nan() || s <= own + self.turned.rounding() {

@@ -1,6 +1,6 @@
 //! Joins the intervals of lines where a body varies to bands.
 
-use super::lines::{Line, LineSlice, TO_LOWEST, Varying, links};
+use super::lines::{LineSlice, SlicedLine, TO_LOWEST, Varying, links};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};
@@ -34,12 +34,16 @@ pub(in crate::patch) fn bands(
 }
 
 /// Joins the intervals of successive lines to bands.
-fn joined(varying: &mut Varying<'_>, lines: &[Line], window: &Window) -> (Vec<Band>, Vec<(usize, f64)>) {
+fn joined(
+    varying: &mut Varying<'_>,
+    lines: &[SlicedLine],
+    window: &Window,
+) -> (Vec<Band>, Vec<(usize, f64)>) {
     let ends = [lines.first(), lines.last()].map(|line| line.map_or(f64::NAN, |line| line.xi));
     let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, LineSlice)>>) = (Vec::new(), Vec::new());
     // The band of every interval of the line before.
     let mut current: Vec<usize> = Vec::new();
-    let nothing = Line { xi: ends[0], slices: Vec::new() };
+    let nothing = SlicedLine { xi: ends[0], slices: Vec::new() };
     let pairs = std::iter::once(&nothing).chain(lines).zip(lines);
     for (before, line) in pairs {
         let links = links(before, line);

@@ -68,7 +68,7 @@ pub(super) struct LineSlice {
 
 /// A line of constant ξ with its slices, by ascending η.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(super) struct SlicedLine {
     pub xi: f64,
     pub slices: Vec<LineSlice>,
 }
@@ -98,7 +98,7 @@ impl<'a> Varying<'a> {
 
     /// Finds the lines over a window, from one end to the other of the range of ξ in which it holds the rail; none if it holds
     /// nothing of it.
-    pub(super) fn lines(&mut self, placement: &Placement, window: &Window) -> Vec<Line> {
+    pub(super) fn lines(&mut self, placement: &Placement, window: &Window) -> Vec<SlicedLine> {
         let eta = window.eta.cut(self.within());
         let reach = match self.level.normal_gap() {
             Some(gap) => gap.rail().reach(),
@@ -106,7 +106,8 @@ impl<'a> Varying<'a> {
         };
         let over = reach.map(|reach| window.xi.cut(reach));
         let Some(xi) = over.filter(|xi| xi.has_width() && eta.has_width()) else { return Vec::new() };
-        let lines: Vec<Line> = places(xi, STEP).into_iter().map(|xi| self.whole_line(xi, eta)).collect();
+        let lines: Vec<SlicedLine> =
+            places(xi, STEP).into_iter().map(|xi| self.whole_line(xi, eta)).collect();
         self.refined(lines)
     }
 
@@ -175,7 +176,7 @@ impl<'a> Varying<'a> {
     }
 
     /// Finds the intervals along a line between two η \[mm\].
-    fn whole_line(&mut self, xi: f64, eta: Interval) -> Line {
+    fn whole_line(&mut self, xi: f64, eta: Interval) -> SlicedLine {
         let mut points: Vec<[f64; 2]> = Vec::new();
         let near = Interval::symmetric(self.step).map(|place| eta.nearest(place));
         for eta in places(near, self.step) {
@@ -194,13 +195,13 @@ impl<'a> Varying<'a> {
     }
 
     /// Finds the intervals along a line by s at ascending η.
-    fn line(&mut self, xi: f64, samples: &[f64]) -> Line {
+    fn line(&mut self, xi: f64, samples: &[f64]) -> SlicedLine {
         let points = samples.iter().map(|&eta| [eta, self.separation(xi, eta)]).collect();
         self.intervals(xi, points)
     }
 
     /// Finds the intervals along a line of which points \[η, s\] are known, by ascending η.
-    fn intervals(&mut self, xi: f64, mut points: Vec<[f64; 2]>) -> Line {
+    fn intervals(&mut self, xi: f64, mut points: Vec<[f64; 2]>) -> SlicedLine {
         let approach = self.approach;
         let dips: Vec<usize> = (1..points.len().max(1) - 1)
             .filter(|&k| {
@@ -241,7 +242,7 @@ impl<'a> Varying<'a> {
         }
         slices.extend(open);
         slices.retain(|found| approach - found.lowest[1] > ROUNDING);
-        Line { xi, slices }
+        SlicedLine { xi, slices }
     }
 
     /// Finds the end of an interval between a place inside and one outside.
@@ -251,9 +252,9 @@ impl<'a> Varying<'a> {
     }
 
     /// Lays more lines until the intervals of neighbours answer each other, or nothing lies between the lines.
-    fn refined(&mut self, lines: Vec<Line>) -> Vec<Line> {
-        let mut out: Vec<Line> = Vec::with_capacity(2 * lines.len());
-        let mut waiting: Vec<Line> = lines.into_iter().rev().collect();
+    fn refined(&mut self, lines: Vec<SlicedLine>) -> Vec<SlicedLine> {
+        let mut out: Vec<SlicedLine> = Vec::with_capacity(2 * lines.len());
+        let mut waiting: Vec<SlicedLine> = lines.into_iter().rev().collect();
         while let Some(next) = waiting.pop() {
             let Some(last) = out.last().filter(|last| !answer(last, &next, self.step)) else {
                 out.push(next);
@@ -276,14 +277,14 @@ impl<'a> Varying<'a> {
 }
 
 /// Lists the pairs of overlapping intervals of two lines.
-pub(super) fn links(a: &Line, b: &Line) -> Vec<[usize; 2]> {
+pub(super) fn links(a: &SlicedLine, b: &SlicedLine) -> Vec<[usize; 2]> {
     let all = (0..a.slices.len()).flat_map(|i| (0..b.slices.len()).map(move |j| [i, j]));
     all.filter(|&[i, j]| a.slices[i].eta.overlaps(b.slices[j].eta)).collect()
 }
 
 /// Tells whether the intervals of two lines answer each other one to one, and none has an end that moves by more than a step \[mm\] or
 /// [`STEEPEST`] times the distance of the lines: another interval may begin and join it in between.
-fn answer(a: &Line, b: &Line, step: f64) -> bool {
+fn answer(a: &SlicedLine, b: &SlicedLine, step: f64) -> bool {
     let (count, farthest) = (a.slices.len(), step.max(STEEPEST * (b.xi - a.xi)));
     let near = |[i, j]: &[usize; 2]| {
         let [from, to] = [a.slices[*i].eta, b.slices[*j].eta];

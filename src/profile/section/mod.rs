@@ -15,7 +15,7 @@ pub use branches::Branches;
 pub use curve::PolynomialBranch;
 pub use envelope::Piece;
 pub use points::{BranchPoint, BranchPoints};
-use span::{Span, View};
+use span::{PolynomialSpan, View};
 
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ pub struct Section {
 impl Section {
     /// Makes the section of a profile in its own axes.
     pub fn own_axes(profile: &Profile, side: Side) -> Self {
-        Self::build(profile, Span::all(profile), Station::AXES, None, side, false)
+        Self::build(profile, PolynomialSpan::all(profile), Station::AXES, None, side, false)
     }
 
     /// Makes the section of the same profile in the contact frame of a point of it: its origin is the point, ξ is along the tangent.
@@ -86,7 +86,7 @@ impl Section {
 
     fn build(
         profile: &Profile,
-        spans: Arc<[Span]>,
+        spans: Arc<[PolynomialSpan]>,
         frame: Station,
         contact: Option<&ProfilePoint>,
         side: Side,

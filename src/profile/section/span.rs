@@ -23,7 +23,7 @@ const WIDENING: f64 = 16.0 * f64::EPSILON;
 
 /// A polynomial segment with what does not depend on the frame.
 #[derive(Debug)]
-pub(super) struct Span {
+pub(super) struct PolynomialSpan {
     polynomial: Polynomial,
     /// x and z \[mm\] at both ends.
     ends: [[Twice; 2]; 2],
@@ -33,7 +33,7 @@ pub(super) struct Span {
     spread: Option<Interval>,
 }
 
-impl Span {
+impl PolynomialSpan {
     /// Returns the spans of a profile's polynomial segments, in their order.
     pub(super) fn all(profile: &Profile) -> Arc<[Self]> {
         let of = |shape: &Shape| match shape {
@@ -86,7 +86,7 @@ impl Span {
 /// The spans of a profile and the frame from which a section sees them.
 #[derive(Debug)]
 pub(super) struct View {
-    pub(super) spans: Arc<[Span]>,
+    pub(super) spans: Arc<[PolynomialSpan]>,
     pub(super) frame: Station,
 }
 

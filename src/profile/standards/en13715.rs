@@ -60,7 +60,7 @@ const FLANGES: [Flange; 3] = [
 ];
 
 /// A member of the family, as its name says.
-struct Wheel<'a> {
+struct FamilyMember<'a> {
     tread: &'a str,
     flange: &'static Flange,
     thickness: f64,
@@ -81,7 +81,7 @@ pub(super) fn wheel(name: &str, s1002: &[SegmentData]) -> Option<Result<Profile>
         let thickness = within(&THICKNESSES, thickness).ok_or_else(|| unknown(name, thickness))?;
         let slope = slope.strip_suffix('%').and_then(|slope| within(&SLOPES, slope));
         let slope = slope.ok_or_else(|| unknown(name, rest))?;
-        Wheel { tread, flange, thickness, slope }.profile(name, s1002)
+        FamilyMember { tread, flange, thickness, slope }.profile(name, s1002)
     })
 }
 
@@ -94,7 +94,7 @@ fn unknown(name: &str, part: &str) -> Error {
     Error::new("profile", format!("\"{part}\" in \"{name}\""), expected, "correct the name")
 }
 
-impl Wheel<'_> {
+impl FamilyMember<'_> {
     fn profile(&self, name: &str, s1002: &[SegmentData]) -> Result<Profile> {
         let thinner = FULL_THICKNESS - self.thickness;
         let drawn = |segments: &[SegmentData]| drawn_profile(name, SOURCE, None, segments);

@@ -4,20 +4,11 @@
 //! z counts downward then, for both bodies, so that the rail is above the wheel.
 
 use crate::lofted::Laid;
-use crate::profile::Section;
+use crate::profile::{Section, Side};
 use crate::search::locus::Attitude;
 
 /// Most steps to the swept body along a vertical line. Without roll one is enough; with it each gains a factor of roll × slope.
 const STEPS: usize = 60;
-
-/// The body of a pair that varies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Varying {
-    /// The rail, along the track; the wheel is above it.
-    Rail,
-    /// The wheel, around its axle; upside down the rail is above it.
-    Wheel,
-}
 
 /// A swept body at one attitude, its profile's origin on the level of the other body's.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +17,8 @@ pub(super) struct SweptAbove<'a> {
     pub section: &'a Section,
     /// The attitude of the wheel over the rail.
     pub attitude: &'a Attitude,
-    /// The body below.
-    pub varying: Varying,
+    /// The body below, which varies: a rail along the track, or a wheel around its axle, upside down under the rail.
+    pub varying: Side,
     /// Distance of the axle about which the profile is swept \[mm\]: R of a wheel, infinite for a rail.
     pub radius: f64,
     /// Upward direction of the track in the swept body's axes.
@@ -36,7 +27,7 @@ pub(super) struct SweptAbove<'a> {
 
 /// The point of the swept body above another one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Above {
+pub(super) struct PointAbove {
     /// Vertical distance \[mm\].
     pub gap: f64,
     /// The point, in the body's axes \[mm\]: x along the axle, z from the profile's origin.
@@ -77,10 +68,10 @@ pub(super) fn out_of_wheel(a: &Attitude, [x, y, z]: [f64; 3]) -> [f64; 3] {
 }
 
 impl<'a> SweptAbove<'a> {
-    pub fn new(section: &'a Section, attitude: &'a Attitude, varying: Varying) -> Self {
+    pub fn new(section: &'a Section, attitude: &'a Attitude, varying: Side) -> Self {
         let (radius, up) = match varying {
-            Varying::Rail => (attitude.radius, into_wheel(attitude, [0.0, 0.0, 1.0])),
-            Varying::Wheel => (f64::INFINITY, [0.0, 0.0, 1.0]),
+            Side::Rail => (attitude.radius, into_wheel(attitude, [0.0, 0.0, 1.0])),
+            Side::Wheel => (f64::INFINITY, [0.0, 0.0, 1.0]),
         };
         Self { section, attitude, varying, radius, up }
     }
@@ -88,16 +79,16 @@ impl<'a> SweptAbove<'a> {
     /// Turns a vector of the varying body's axes into these.
     pub fn turned(&self, v: [f64; 3]) -> [f64; 3] {
         match self.varying {
-            Varying::Rail => into_wheel(self.attitude, v),
-            Varying::Wheel => upside_down(out_of_wheel(self.attitude, upside_down(v))),
+            Side::Rail => into_wheel(self.attitude, v),
+            Side::Wheel => upside_down(out_of_wheel(self.attitude, upside_down(v))),
         }
     }
 
     /// Turns a direction of these axes that points up, out of the varying body, into an upward one of the rail's.
     pub fn upward(&self, v: [f64; 3]) -> [f64; 3] {
         match self.varying {
-            Varying::Rail => out_of_wheel(self.attitude, v),
-            Varying::Wheel => [-v[0], -v[1], v[2]],
+            Side::Rail => out_of_wheel(self.attitude, v),
+            Side::Wheel => [-v[0], -v[1], v[2]],
         }
     }
 
@@ -105,8 +96,8 @@ impl<'a> SweptAbove<'a> {
     pub fn seen(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let Attitude { offset, along, .. } = *self.attitude;
         match self.varying {
-            Varying::Rail => self.turned([x - offset, y - along, z]),
-            Varying::Wheel => {
+            Side::Rail => self.turned([x - offset, y - along, z]),
+            Side::Wheel => {
                 let [x, y, z] = self.turned([x, y, z]);
                 [x + offset, y + along, z]
             }
@@ -116,8 +107,8 @@ impl<'a> SweptAbove<'a> {
     /// How the varying body's surface lies in its own axes; `along` \[mm\] of it is under the middle of the axle.
     pub fn laid(&self, along: f64) -> Laid {
         match self.varying {
-            Varying::Rail => Laid::Along(along),
-            Varying::Wheel => Laid::Around { radius: self.attitude.radius, lowest: along },
+            Side::Rail => Laid::Along(along),
+            Side::Wheel => Laid::Around { radius: self.attitude.radius, lowest: along },
         }
     }
 
@@ -127,7 +118,7 @@ impl<'a> SweptAbove<'a> {
     }
 
     /// Finds the swept body's point above a point of its axes, or below; `None` where there is none.
-    pub fn above(&self, from: [f64; 3]) -> Option<Above> {
+    pub fn above(&self, from: [f64; 3]) -> Option<PointAbove> {
         let mut gap = 0.0;
         let size = self.attitude.radius + from[0].abs();
         for _ in 0..STEPS {
@@ -149,7 +140,7 @@ impl<'a> SweptAbove<'a> {
     }
 
     /// The lower side at (x, y) of the body's axes.
-    fn over(&self, x: f64, y: f64) -> Option<Above> {
+    fn over(&self, x: f64, y: f64) -> Option<PointAbove> {
         let branch = self.section.branch_at(x)?;
         let (station, curvature) = branch.station_and_curvature(branch.parameter(x));
         if station.cos <= 0.0 {
@@ -160,7 +151,7 @@ impl<'a> SweptAbove<'a> {
         let tangent = [station.sin, station.cos];
         if self.radius == f64::INFINITY {
             let (at, slopes, bends) = ([x, y, station.z], [slope, 0.0], [bend, 0.0, 0.0]);
-            return Some(Above { gap: 0.0, at, tangent, curvature, slopes, bends });
+            return Some(PointAbove { gap: 0.0, at, tangent, curvature, slopes, bends });
         }
         let rolling = self.radius - station.z;
         let square = (rolling - y) * (rolling + y);
@@ -169,7 +160,7 @@ impl<'a> SweptAbove<'a> {
         }
         let down = square.sqrt();
         let (across, along) = (rolling * slope / down, y / down);
-        Some(Above {
+        Some(PointAbove {
             gap: 0.0,
             at: [x, y, station.z + y * y / (rolling + down)],
             tangent,

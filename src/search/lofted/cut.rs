@@ -1,6 +1,6 @@
 //! Sections by planes across the track through a body that varies.
 
-use crate::lofted::{Loft, Strip};
+use crate::lofted::{Loft, LoftStrip};
 
 /// Most steps to the place around an axle at which a plane cuts a circle. The radius varies by far less than it is: each gains two digits.
 const STEPS: usize = 8;
@@ -45,14 +45,14 @@ pub(super) fn cut_wheel(loft: &Loft, radius: f64, lowest: f64, yaw: f64, ahead: 
 }
 
 /// The curve of a share of a part's arc length: its point \[x, z\] at y \[mm\]; `None` where the part is interrupted.
-type Line<'a> = &'a dyn Fn(f64) -> Option<[f64; 2]>;
+type PartCurve<'a> = &'a dyn Fn(f64) -> Option<[f64; 2]>;
 
 /// Takes one point of every such curve, part by part; a curve without a point ends a piece, and parts that meet are one piece.
-fn pieces(loft: &Loft, point: impl Fn(Line<'_>) -> Option<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+fn pieces(loft: &Loft, point: impl Fn(PartCurve<'_>) -> Option<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
     let parts = loft.strips.iter().map(|strip| strip.part + 1).max().unwrap_or(0);
     for part in 0..parts {
-        let strips: Vec<&Strip> = loft.strips.iter().filter(|strip| strip.part == part).collect();
+        let strips: Vec<&LoftStrip> = loft.strips.iter().filter(|strip| strip.part == part).collect();
         let cells = strips.iter().map(|strip| strip.cells()).max().unwrap_or(0);
         let mut open = false;
         for node in 0..=cells {

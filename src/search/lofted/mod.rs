@@ -22,16 +22,16 @@ use super::locus::Attitude;
 use super::over_rail::Work;
 use super::touch::{Contact, Pose, Selection, Touch, beside_its_rail};
 use crate::error::{Error, Result};
-use crate::lofted::{Loft, LoftedBody, LoftedWheel, Strip, turned};
+use crate::lofted::{Loft, LoftStrip, LoftedBody, LoftedWheel, turned};
 use crate::numerics::interval::Interval;
 use crate::placement::Pair;
 use crate::profile::{Profile, Section, Side};
-use above::{SweptAbove, Varying};
+use above::SweptAbove;
 pub use cut::Cut;
 use cut::{cut_rail, cut_wheel};
-use node::{BoundPart, Part};
+use node::{BoundPart, VaryingPart};
 use place::{candidate, contact};
-use settle::{Found, Gap, Settled, apart};
+use settle::{FoundPlace, SettledPlace, StripGap, apart};
 
 /// Largest run of a part of the swept profile \[mm\]: its chord is off by 2.4 µm on a 13 mm radius.
 const SWEPT_PARTS: f64 = 0.5;
@@ -53,7 +53,7 @@ const WINDOW: f64 = 1.3;
 #[derive(Debug, Clone)]
 pub struct LoftedPair {
     loft: Arc<Loft>,
-    varying: Varying,
+    varying: Side,
     /// The other body, upside down where that is the rail.
     swept: SearchBody,
     section: Section,
@@ -71,7 +71,7 @@ pub(super) struct LoftedSearch<'a> {
     along: f64,
     parts: Vec<BoundPart>,
     queue: BinaryHeap<Open>,
-    found: Vec<Found>,
+    found: Vec<FoundPlace>,
     contacts: Vec<Contact>,
     /// Whether a search had too many parts to look at; none is made until this is taken back.
     pub gave_up: bool,
@@ -114,7 +114,7 @@ impl LoftedPair {
     /// # Errors
     /// A wheel profile with no part that faces the rail.
     pub fn new(loft: Arc<Loft>, wheel: &Profile, radius: f64) -> Result<Self> {
-        Self::of(loft, Varying::Rail, wheel, [radius, 0.0])
+        Self::of(loft, Side::Rail, wheel, [radius, 0.0])
     }
 
     /// Lowers a single wheel until it touches: the height \[mm\] of its profile's origin over the rail's one, and the contacts of the
@@ -157,10 +157,10 @@ impl LoftedPair {
     /// # Errors
     /// A rail profile with no part that faces the wheel.
     pub fn turning(wheel: &LoftedWheel, rail: &Profile) -> Result<Self> {
-        Self::of(Arc::clone(&wheel.loft), Varying::Wheel, &rail.upside_down(), [wheel.radius, wheel.middle])
+        Self::of(Arc::clone(&wheel.loft), Side::Wheel, &rail.upside_down(), [wheel.radius, wheel.middle])
     }
 
-    fn of(loft: Arc<Loft>, varying: Varying, swept: &Profile, [radius, middle]: [f64; 2]) -> Result<Self> {
+    fn of(loft: Arc<Loft>, varying: Side, swept: &Profile, [radius, middle]: [f64; 2]) -> Result<Self> {
         let section = Section::own_axes(swept, Side::Wheel);
         let longest = SWEPT_PARTS.max(swept.extent() / MOST_PARTS);
         let body = SearchBody::with_arcs_up_to(longest, &section, swept.extent(), Side::Wheel);
@@ -190,8 +190,8 @@ impl LoftedPair {
     /// Says that so many places touch at once that no search tells them apart.
     pub(super) fn too_close(&self) -> Error {
         let (place, other) = match self.varying {
-            Varying::Rail => ("rail", "wheel"),
-            Varying::Wheel => ("wheel", "rail"),
+            Side::Rail => ("rail", "wheel"),
+            Side::Wheel => ("wheel", "rail"),
         };
         let expected = format!("slices over which rail and wheel touch at places, not all over the {other}");
         let advice = "look at the slices nearby, or lower `within`";
@@ -200,15 +200,15 @@ impl LoftedPair {
 
     /// Whether it is the wheel that varies.
     pub(super) fn turning_wheel(&self) -> bool {
-        self.varying == Varying::Wheel
+        self.varying == Side::Wheel
     }
 
     /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin. That is at `along`
     /// \[mm\] of a rail's list; of a wheel, yawed by `yaw` \[rad\], −pitch \[rad\] lies lowest.
     pub(super) fn cut(&self, [along, pitch]: [f64; 2], yaw: f64, ahead: f64) -> Cut {
         match self.varying {
-            Varying::Rail => cut_rail(&self.loft, along + ahead),
-            Varying::Wheel => cut_wheel(&self.loft, self.radius, self.lowest(pitch), yaw, ahead),
+            Side::Rail => cut_rail(&self.loft, along + ahead),
+            Side::Wheel => cut_wheel(&self.loft, self.radius, self.lowest(pitch), yaw, ahead),
         }
     }
 
@@ -233,8 +233,8 @@ impl<'a> LoftedSearch<'a> {
     /// forward at the bottom: −pitch of it lies lowest.
     pub fn stand_at(&mut self, along: f64, pitch: f64) {
         self.along = match self.pair.varying {
-            Varying::Rail => along,
-            Varying::Wheel => self.pair.lowest(pitch),
+            Side::Rail => along,
+            Side::Wheel => self.pair.lowest(pitch),
         };
     }
 
@@ -275,7 +275,7 @@ impl<'a> LoftedSearch<'a> {
                 }
             }
         }
-        let gap = |found: &Found| found.settled.above.gap;
+        let gap = |found: &FoundPlace| found.settled.above.gap;
         let lowest = *self.found.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
         self.found.retain(|found| gap(found) <= gap(&lowest) + within);
         Some(candidate(&over, &lowest))
@@ -285,8 +285,8 @@ impl<'a> LoftedSearch<'a> {
     fn open(&mut self, over: &SweptAbove<'_>, lowest: &mut f64, within: f64) {
         let pair = self.pair;
         let (ahead, far) = match pair.varying {
-            Varying::Rail => (over.attitude.along, pair.radius),
-            Varying::Wheel => (0.0, WINDOW * pair.radius),
+            Side::Rail => (over.attitude.along, pair.radius),
+            Side::Wheel => (0.0, WINDOW * pair.radius),
         };
         let reach = Interval::of(self.along).grown(far) + ahead;
         for (strip, own) in pair.loft.strips.iter().enumerate() {
@@ -294,7 +294,7 @@ impl<'a> LoftedSearch<'a> {
                 let y = bay.y().cut(reach);
                 if y.has_width() {
                     let shares = Interval::new(0.0, 1.0);
-                    let part = Part { strip, bay: bay.index(), node: 1, shares, y };
+                    let part = VaryingPart { strip, bay: bay.index(), node: 1, shares, y };
                     self.add(over, part, 0, lowest, within);
                 }
             }
@@ -302,13 +302,13 @@ impl<'a> LoftedSearch<'a> {
     }
 
     /// Adds a part of the varying body against a node of the other.
-    fn add(&mut self, over: &SweptAbove<'_>, part: Part, node: usize, lowest: &mut f64, within: f64) {
+    fn add(&mut self, over: &SweptAbove<'_>, part: VaryingPart, node: usize, lowest: &mut f64, within: f64) {
         let loft = &self.pair.loft;
         if part.bay(loft).cells(part.node).is_empty() {
             return;
         }
         if part.cell(loft).is_some() {
-            let gap = Gap { strip: &loft.strips[part.strip], over, along: self.along };
+            let gap = StripGap { strip: &loft.strips[part.strip], over, along: self.along };
             if let Some((_, above)) = gap.at(part.middle(loft)) {
                 *lowest = lowest.min(above.gap);
             }
@@ -339,7 +339,7 @@ impl<'a> LoftedSearch<'a> {
             return;
         }
         let part = own.part;
-        let gap = Gap { strip: &loft.strips[part.strip], over, along: self.along };
+        let gap = StripGap { strip: &loft.strips[part.strip], over, along: self.along };
         self.work.solves += 1;
         let Some(settled) = gap.settle(part.middle(loft)) else { return };
         let rounding = over.rounding();
@@ -348,23 +348,23 @@ impl<'a> LoftedSearch<'a> {
         }
         *lowest = lowest.min(settled.above.gap);
         // Of a stretch with one gap, as under a cylinder, the first place counts.
-        let known = |found: &Found| {
+        let known = |found: &FoundPlace| {
             let level = (found.settled.above.gap - settled.above.gap).abs() <= rounding;
             let stretch = found.settled.stretch && settled.stretch && level;
             found.strip == part.strip && (stretch || apart(found.settled.place, settled.place) <= ONE_PLACE)
         };
         if !self.found.iter().any(known) {
-            self.found.push(Found { strip: part.strip, settled });
+            self.found.push(FoundPlace { strip: part.strip, settled });
         }
     }
 
     /// Tells whether the surface goes on beyond the end of the strip at which a place lies, to a smaller gap.
-    fn goes_on(&self, over: &SweptAbove<'_>, strip: usize, settled: &Settled) -> bool {
+    fn goes_on(&self, over: &SweptAbove<'_>, strip: usize, settled: &SettledPlace) -> bool {
         let strips = &self.pair.loft.strips;
         let (own, [u, y]) = (&strips[strip], settled.place);
         let (left, first) = (u <= 0.0, y <= own.reach().low);
-        let smaller = |other: &Strip, place: [f64; 2], axis: usize, back: bool| {
-            let gap = Gap { strip: other, over, along: self.along };
+        let smaller = |other: &LoftStrip, place: [f64; 2], axis: usize, back: bool| {
+            let gap = StripGap { strip: other, over, along: self.along };
             gap.at(place).is_some_and(|(below, above)| {
                 let same = (0..2).all(|k| (below.own.at[k] - settled.below.own.at[k]).abs() <= ONE_PLACE);
                 let gradient = gap.derivatives(&below, &above).0[axis];
@@ -389,9 +389,9 @@ impl<'a> LoftedSearch<'a> {
     pub fn follow(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
         let over = self.pair.over(attitude);
         let strip = meeting.elements[1] as usize;
-        let gap = Gap { strip: &self.pair.loft.strips[strip], over: &over, along: self.along };
+        let gap = StripGap { strip: &self.pair.loft.strips[strip], over: &over, along: self.along };
         let settled = gap.settle(meeting.parameters)?;
-        Some(candidate(&over, &Found { strip, settled }))
+        Some(candidate(&over, &FoundPlace { strip, settled }))
     }
 
     /// Collects the contacts of `selection` among the places that [`Self::lower`] left, at the height that it gave.

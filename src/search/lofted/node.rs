@@ -1,8 +1,9 @@
 //! Parts of a lofted body with their control points, and lower bounds of the gap over them.
 
-use super::above::{SweptAbove, Varying};
+use super::above::SweptAbove;
 use crate::lofted::{Bay, Loft, directions, on_wheel};
 use crate::numerics::interval::Interval;
+use crate::profile::Side;
 use crate::search::bounds::Bounds;
 
 /// Change \[mm\] of x and z across and along of a part from which Newton's method starts.
@@ -26,7 +27,7 @@ const LEVEL: f64 = 1e-12;
 
 /// Part of the varying body: over some cells between two slices, and over an interval of y.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct VaryingPart {
     /// Index of the strip.
     pub strip: usize,
     /// Index of the bay between two slices.
@@ -42,7 +43,7 @@ pub(super) struct Part {
 /// A part with what bounds it, in the swept body's axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoundPart {
-    pub part: Part,
+    pub part: VaryingPart,
     /// Points whose hull holds the part: control points, or corners of a box.
     points: [[f64; 3]; 16],
     /// How many there are.
@@ -76,7 +77,7 @@ struct Wrap {
     turns: [f64; 2],
 }
 
-impl Part {
+impl VaryingPart {
     pub fn bay<'a>(&self, loft: &'a Loft) -> Bay<'a> {
         loft.strips[self.strip].bay(self.bay)
     }
@@ -114,11 +115,11 @@ impl Part {
             }
         }
         let wrap = match over.varying {
-            Varying::Rail => {
+            Side::Rail => {
                 points.iter_mut().for_each(|point| point[1] -= along);
                 None
             }
-            Varying::Wheel => {
+            Side::Wheel => {
                 let off = loft.strips[self.strip].off();
                 Some(self.wrap(&mut points[..count], over, along).wider(off))
             }
@@ -225,15 +226,15 @@ impl BoundPart {
     }
 
     /// Halves the part where it changes most.
-    pub fn halves(&self, loft: &Loft) -> [Part; 2] {
-        let Part { y, shares, node, .. } = self.part;
+    pub fn halves(&self, loft: &Loft) -> [VaryingPart; 2] {
+        let VaryingPart { y, shares, node, .. } = self.part;
         if self.changes[1] > self.changes[0] {
-            return y.halves().map(|y| Part { y, ..self.part });
+            return y.halves().map(|y| VaryingPart { y, ..self.part });
         }
         if self.part.cell(loft).is_none() {
-            return [0, 1].map(|k| Part { node: 2 * node + k, ..self.part });
+            return [0, 1].map(|k| VaryingPart { node: 2 * node + k, ..self.part });
         }
-        shares.halves().map(|shares| Part { shares, ..self.part })
+        shares.halves().map(|shares| VaryingPart { shares, ..self.part })
     }
 
     /// Tells whether the gap over the part may be least there or level: whether the surfaces of both bodies may be parallel across and
@@ -249,7 +250,7 @@ impl BoundPart {
         let across = of.tangent * Interval::new(1.0, if least == f64::INFINITY { 1.0 } else { least / down });
         let along = self.along * Interval::new(most.recip(), down.recip());
         let strip = &loft.strips[self.part.strip];
-        let (Part { shares, y, .. }, reach) = (self.part, strip.reach());
+        let (VaryingPart { shares, y, .. }, reach) = (self.part, strip.reach());
         let ends = [
             [cell == 0 && shares.low == 0.0, cell + 1 == strip.cells() && shares.high == 1.0],
             [y.low == reach.low, y.high == reach.high],

@@ -1,14 +1,14 @@
 //! A place of contact as rail and wheel have it: their points, tangents, normal and curvatures there.
 
-use super::above::{SweptAbove, Varying, into_wheel, out_of_wheel};
-use super::settle::{Found, Settled};
+use super::above::{SweptAbove, into_wheel, out_of_wheel};
+use super::settle::{FoundPlace, SettledPlace};
 use crate::lofted::SurfacePoint;
-use crate::profile::Station;
+use crate::profile::{Side, Station};
 use crate::search::candidates::{Candidate, Meeting};
 use crate::search::touch::Contact;
 
 /// A place as rail and wheel have it.
-struct Place {
+struct TouchPlace {
     /// Upward unit normal of the rail, in its axes; at a kink of the rail that of the wheel.
     normal: [f64; 3],
     /// x and z on the rail \[mm\].
@@ -31,14 +31,14 @@ struct Place {
     on_wheel: [f64; 2],
 }
 
-impl Place {
-    fn new(over: &SweptAbove<'_>, found: &Found, along: f64) -> Self {
-        let Settled { below, above, at_end, kink, .. } = &found.settled;
+impl TouchPlace {
+    fn new(over: &SweptAbove<'_>, found: &FoundPlace, along: f64) -> Self {
+        let SettledPlace { below, above, at_end, kink, .. } = &found.settled;
         let ([x, h], radius) = (below.own.at, over.attitude.radius);
         let normal = over.upward(normal(over, &found.settled));
         let ends = at_end.contains(&true);
         let section = if at_end[0] { f64::NEG_INFINITY } else { section_curvature(&below.own) };
-        if over.varying == Varying::Rail {
+        if over.varying == Side::Rail {
             let [_, y, z] = above.at;
             let rolling_radius = (radius - z).hypot(y);
             return Self {
@@ -76,9 +76,9 @@ impl Place {
 
 /// Common unit normal at a place, out of the varying body, in the swept body's axes: that of the body which is smooth there. A rail that is
 /// extruded has none along the track.
-fn normal(over: &SweptAbove<'_>, settled: &Settled) -> [f64; 3] {
-    let Settled { below, above, at_end, kink, .. } = settled;
-    let n = if at_end.contains(&true) || (over.varying == Varying::Wheel && !kink) {
+fn normal(over: &SweptAbove<'_>, settled: &SettledPlace) -> [f64; 3] {
+    let SettledPlace { below, above, at_end, kink, .. } = settled;
+    let n = if at_end.contains(&true) || (over.varying == Side::Wheel && !kink) {
         [-above.slopes[0], -above.slopes[1], 1.0]
     } else {
         let ([xu, yu, zu], [xy, yy, zy]) = (below.across, below.along);
@@ -88,8 +88,8 @@ fn normal(over: &SweptAbove<'_>, settled: &Settled) -> [f64; 3] {
     n.map(|component| component / length)
 }
 
-pub(super) fn candidate(over: &SweptAbove<'_>, found: &Found) -> Candidate {
-    let place = Place::new(over, found, 0.0);
+pub(super) fn candidate(over: &SweptAbove<'_>, found: &FoundPlace) -> Candidate {
+    let place = TouchPlace::new(over, found, 0.0);
     let [x, _, z] = place.normal;
     let length = x.hypot(z);
     let [sin, cos] = place.tangent;
@@ -109,8 +109,8 @@ fn section_curvature(own: &SurfacePoint) -> f64 {
     (x * zz - z * xx) / x.hypot(z).powi(3)
 }
 
-pub(super) fn contact(over: &SweptAbove<'_>, found: &Found, along: f64, height: f64) -> Contact {
-    let place = Place::new(over, found, along);
+pub(super) fn contact(over: &SweptAbove<'_>, found: &FoundPlace, along: f64, height: f64) -> Contact {
+    let place = TouchPlace::new(over, found, along);
     let normal = place.normal;
     let (theta, ahead) = ((-normal[0]).atan2(normal[2]), normal[1].asin());
     let (cos, sin) = (theta.cos(), theta.sin());

@@ -1,7 +1,7 @@
 //! Newton's method to the least gap near a place of a lofted body, within the strip that it is on.
 
-use super::above::{Above, SweptAbove};
-use crate::lofted::{SPACING, SpacePoint, Strip};
+use super::above::{PointAbove, SweptAbove};
+use crate::lofted::{LoftStrip, SPACING, SpacePoint};
 use crate::numerics::interval::Interval;
 
 /// Most steps. Newton's method takes four to six from a place within a tenth of a millimetre.
@@ -18,13 +18,13 @@ const HALVINGS: usize = 30;
 
 /// A place of the varying body with the swept one above it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Settled {
+pub(super) struct SettledPlace {
     /// Parameters u and y \[mm\] of the strip.
     pub place: [f64; 2],
     /// The varying body's point.
     pub below: SpacePoint,
     /// The swept one's.
-    pub above: Above,
+    pub above: PointAbove,
     /// Whether it lies at an end of the strip: across, along.
     pub at_end: [bool; 2],
     /// Whether no derivative vanishes there although it lies inside: at a kink of the swept body.
@@ -35,8 +35,8 @@ pub(super) struct Settled {
 
 /// The gap of a swept body over a strip.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gap<'a> {
-    pub strip: &'a Strip,
+pub(super) struct StripGap<'a> {
+    pub strip: &'a LoftStrip,
     pub over: &'a SweptAbove<'a>,
     /// Coordinate of the axle's middle in the list, or of the wheel's lowest meridian \[mm\].
     pub along: f64,
@@ -44,21 +44,21 @@ pub(super) struct Gap<'a> {
 
 /// A place of contact with its strip.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
+pub(super) struct FoundPlace {
     pub strip: usize,
-    pub settled: Settled,
+    pub settled: SettledPlace,
 }
 
-impl Gap<'_> {
+impl StripGap<'_> {
     /// The varying body's point at a place, and the other one's above it; `None` where that does not reach.
-    pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SpacePoint, Above)> {
+    pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SpacePoint, PointAbove)> {
         let below = self.over.laid(self.along).point(self.strip.point(u, y));
         let above = self.over.above(self.over.seen(below.at))?;
         Some((below, above))
     }
 
     /// Gradient and second derivatives (uu, uy, yy) of the gap with respect to a place; the second ones hold where the gradient is 0.
-    pub fn derivatives(&self, below: &SpacePoint, above: &Above) -> ([f64; 2], [f64; 3]) {
+    pub fn derivatives(&self, below: &SpacePoint, above: &PointAbove) -> ([f64; 2], [f64; 3]) {
         let ([a, b], [aa, ab, bb]) = (above.slopes, above.bends);
         // The height of the swept body less z, along a direction of its axes.
         let rise = |v: [f64; 3]| a * v[0] + b * v[1] - v[2];
@@ -79,7 +79,7 @@ impl Gap<'_> {
 
     /// Follows the gap down to its least value near a place; `None` where the swept body does not reach. Steps that do not settle end at
     /// the lowest place that they reached, as at a kink.
-    pub fn settle(&self, from: [f64; 2]) -> Option<Settled> {
+    pub fn settle(&self, from: [f64; 2]) -> Option<SettledPlace> {
         let ends = [Interval::new(0.0, self.strip.cells() as f64), self.strip.reach()];
         let mut place = from;
         let (mut below, mut above) = self.at(place)?;
@@ -93,7 +93,7 @@ impl Gap<'_> {
             let level = self.level(gradient, bends);
             let step = descent(gradient, bends, [0, 1].map(|k| held[k] || level[k]));
             let stretch = (0..2).any(|k| level[k] && !held[k]);
-            let found = |at_kink| Settled { place, below, above, at_end: held, kink: at_kink, stretch };
+            let found = |at_kink| SettledPlace { place, below, above, at_end: held, kink: at_kink, stretch };
             if (0..2).all(|k| step[k].abs() <= FOUND[k]) {
                 return Some(self.at_beginning(found(false), [0, 1].map(|k| level[k] && !held[k])));
             }
@@ -117,19 +117,19 @@ impl Gap<'_> {
                 None => return Some(found(true)),
             }
         }
-        Some(Settled { place, below, above, at_end: [false; 2], kink: true, stretch: false })
+        Some(SettledPlace { place, below, above, at_end: [false; 2], kink: true, stretch: false })
     }
 
     /// Moves a place on a stretch with one gap to the strip's beginning, if that has the same gap: whatever part of a flat Newton's method
     /// started from, it ends at one place.
-    fn at_beginning(&self, mut settled: Settled, level: [bool; 2]) -> Settled {
+    fn at_beginning(&self, mut settled: SettledPlace, level: [bool; 2]) -> SettledPlace {
         let begin = [0.0, self.strip.reach().low];
         for k in (0..2).filter(|&k| level[k]) {
             let mut place = settled.place;
             place[k] = begin[k];
-            let same = |above: &Above| (above.gap - settled.above.gap).abs() <= self.over.rounding();
+            let same = |above: &PointAbove| (above.gap - settled.above.gap).abs() <= self.over.rounding();
             if let Some((below, above)) = self.at(place).filter(|(_, above)| same(above)) {
-                settled = Settled { place, below, above, ..settled };
+                settled = SettledPlace { place, below, above, ..settled };
             }
         }
         settled

@@ -32,7 +32,7 @@ mod tests;
 
 use branches::Searched;
 use movement::{Movement, Quarter};
-use refine::{LEAST_AMPLITUDE, Table, most_searches};
+use refine::{LEAST_AMPLITUDE, RefinedTable, most_searches};
 
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
@@ -83,7 +83,7 @@ pub struct Conicity {
 struct Swing {
     movement: Movement,
     /// For each cell T as a polynomial; `None` where T is no smooth curve.
-    fits: Vec<Option<Fit>>,
+    fits: Vec<Option<CellFit>>,
 }
 
 /// An equivalent conicity with its error.
@@ -115,7 +115,7 @@ pub enum NoConicity {
 /// T over one cell, in Newton's form in s = √((y − y_k)/(y_(k+1) − y_k)): beyond a jump of Δr, T grows with
 /// s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Fit {
+struct CellFit {
     differences: [f64; POINTS.len()],
     /// Largest relative error of T over the cell.
     error: f64,
@@ -171,7 +171,7 @@ impl Conicity {
         }
         let mut searched = Searched::new(system, roll);
         if system.symmetric() {
-            let table = Table::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
+            let table = RefinedTable::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
             return Self::refined(table, progress);
         }
         Self::about_centre(&mut searched, amplitude, progress)
@@ -186,10 +186,10 @@ impl Conicity {
         let centre = searched.centre(amplitude)?;
         let y_0 = centre.unwrap_or(0.0);
         let reach = ASYMMETRY * amplitude;
-        let table = Table::new(|u, sides| searched.at(y_0 + u, sides), reach, ACCURACY)?;
+        let table = RefinedTable::new(|u, sides| searched.at(y_0 + u, sides), reach, ACCURACY)?;
         let Self { right, searches, .. } = Self::refined(table, progress)?;
-        let mirrored = |u: f64, sides: &mut branches::Sides| searched.mirrored(y_0 - u, sides);
-        let left = Self::refined(Table::new(mirrored, reach, ACCURACY)?, &mut |done, most| {
+        let mirrored = |u: f64, sides: &mut branches::SideBranches| searched.mirrored(y_0 - u, sides);
+        let left = Self::refined(RefinedTable::new(mirrored, reach, ACCURACY)?, &mut |done, most| {
             progress(searches + done, searches + most);
         })?;
         Ok(Self { centre, right, left: Some(left.right), searches: searches + left.searches })
@@ -249,19 +249,19 @@ impl Conicity {
     }
 
     /// Refines the table round by round until all conicities are accurate, or its searches are used up.
-    fn refined<F>(mut table: Table<F>, progress: &mut dyn FnMut(usize, usize)) -> Result<Self>
+    fn refined<F>(mut table: RefinedTable<F>, progress: &mut dyn FnMut(usize, usize)) -> Result<Self>
     where
-        F: FnMut(f64, &mut branches::Sides) -> Result<bool>,
+        F: FnMut(f64, &mut branches::SideBranches) -> Result<bool>,
     {
         let mut influence = ACCURACY;
         let mut rounds = 1..ROUNDS;
         loop {
             table.refine(influence, progress)?;
             let movement = Movement::new(table.knots());
-            let fits: Vec<_> = (0..movement.cells()).map(|cell| Fit::new(&movement, cell)).collect();
+            let fits: Vec<_> = (0..movement.cells()).map(|cell| CellFit::new(&movement, cell)).collect();
             let [searches, most] = table.searches();
             let served = |cell: usize| movement.ends(cell).high > LEAST_AMPLITUDE;
-            let fine = |fit: &Fit| 2.0 * fit.error <= ACCURACY;
+            let fine = |fit: &CellFit| 2.0 * fit.error <= ACCURACY;
             let converged =
                 fits.iter().enumerate().all(|(cell, fit)| !served(cell) || fit.as_ref().is_none_or(fine));
             if converged || searches >= most || rounds.next().is_none() {
@@ -289,7 +289,7 @@ fn share(cell: Interval, y: f64) -> f64 {
     ((y - cell.low) / cell.width()).sqrt()
 }
 
-impl Fit {
+impl CellFit {
     /// Fits T over a cell; `None` over a jump, and where T is no smooth function of s: close to where the
     /// movement does not come back.
     fn new(movement: &Movement, cell: usize) -> Option<Self> {

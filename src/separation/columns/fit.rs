@@ -13,7 +13,7 @@ use crate::numerics::nan_max;
 use crate::separation::demand::{Demand, first_count};
 use crate::separation::relief::Relief;
 use crate::separation::span::{SagittaPoints, Span, SpanLanes};
-use crate::separation::wheel_surface::Surface;
+use crate::separation::wheel_surface::WheelSurface;
 
 /// Fits polynomials to columns of a relief: for strips, for columns in no strip, and for the measurement of errors.
 #[derive(Debug)]
@@ -84,7 +84,7 @@ impl<'a> Fitter<'a> {
 /// if no degree reaches the demand; the span is then close to a vertical tangent.
 #[inline(always)]
 pub fn polynomials<const N: usize>(
-    wheel: &Surface<'_>,
+    wheel: &WheelSurface<'_>,
     span: &SpanLanes<'_, N>,
     u_max: f64,
     (demand, least): (Demand, usize),

@@ -5,7 +5,7 @@ use crate::profile::{Branches, Piece, Section};
 use crate::separation::gap::{contact_gap, contact_gaps};
 use crate::separation::relief::Relief;
 use crate::separation::span::SpanLanes;
-use crate::separation::wheel_surface::Surface;
+use crate::separation::wheel_surface::WheelSurface;
 
 /// Most spans of a column that are computed for several columns at once.
 pub const MOST_SPANS: usize = 3;
@@ -15,7 +15,7 @@ pub const MOST_SPANS: usize = 3;
 #[derive(Debug)]
 pub struct Neighbours<'a> {
     /// The wheel below the columns.
-    pub wheel: Surface<'a>,
+    pub wheel: WheelSurface<'a>,
     /// ξ of the columns \[mm\].
     pub xi: Lanes,
     /// Whether the columns begin over both contact segments.
@@ -37,7 +37,7 @@ pub struct SpanColumns<'a> {
 
 impl<'a> Neighbours<'a> {
     /// Makes an empty set of columns.
-    pub fn new(wheel: Surface<'a>) -> Self {
+    pub fn new(wheel: WheelSurface<'a>) -> Self {
         Self {
             wheel,
             xi: [f64::NAN; MANY],
@@ -156,7 +156,7 @@ fn piece_inside<'a>(rest: &mut &'a [Piece], xi: f64) -> Option<&'a Piece> {
 
 /// Finds the pieces of rail and wheel for each ξ whose column lies over one piece of each body.
 fn pieces_under<'r, 'w>(
-    wheel: &Surface<'w>,
+    wheel: &WheelSurface<'w>,
     rail: &'r Section,
     u_max: f64,
     xi: &[f64],
@@ -173,7 +173,12 @@ fn pieces_under<'r, 'w>(
 /// Makes one span of all columns to the end of its piece. If `first`, it begins in the midplane. Returns `None` if a point
 /// is not found.
 #[inline(always)]
-fn span_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece, first: bool) -> Option<SpanLanes<'a, MANY>> {
+fn span_over<'a>(
+    wheel: &WheelSurface<'a>,
+    xi: &Lanes,
+    piece: &Piece,
+    first: bool,
+) -> Option<SpanLanes<'a, MANY>> {
     let branch = &wheel.section.branches[piece.branch];
     let mut span = if first {
         wheel.span_from(xi, branch, [0.0; MANY], branch.points(xi)?)

@@ -14,7 +14,7 @@ use crate::separation::demand::{Demand, ROUNDING_LEVEL};
 use crate::separation::gap::contact_gap;
 use crate::separation::relief::Relief;
 use crate::separation::span::SpanLanes;
-use crate::separation::wheel_surface::Surface;
+use crate::separation::wheel_surface::WheelSurface;
 
 /// Share of an interval's largest |s| below which an interpolated s would not have the promised thirteen digits.
 pub const SMALL_SHARE: f64 = 1.0 / 64.0;
@@ -207,7 +207,7 @@ impl SkewedColumn<'_, '_> {
         }
         let xi_w = lanes(|k| xi + shift[k]);
         relief.wheel.spans(xi_w[MANY / 2], u[MANY / 2], &mut relief.spans);
-        let span = relief.spans[Surface::span_at(&relief.spans, u[MANY / 2])?];
+        let span = relief.spans[WheelSurface::span_at(&relief.spans, u[MANY / 2])?];
         let wheel = &relief.wheel;
         let piece = &wheel.section.pieces[span.piece];
         let here = spans_over(wheel, &xi_w, piece)?;
@@ -239,7 +239,7 @@ impl SkewedColumn<'_, '_> {
 /// Makes the spans of columns at ξ over one piece. Each begins where its column enters the piece; the ends are not known.
 /// Returns `None` if a point is not found.
 #[inline(always)]
-fn spans_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece) -> Option<SpanLanes<'a, MANY>> {
+fn spans_over<'a>(wheel: &WheelSurface<'a>, xi: &Lanes, piece: &Piece) -> Option<SpanLanes<'a, MANY>> {
     let branch = &wheel.section.branches[piece.branch];
     let begin = lanes(|k| piece.xi.nearest(xi[k]));
     let e0 = lanes(|k| if xi[k] == begin[k] { 0.0 } else { (xi[k] - begin[k]) / wheel.sin });
@@ -249,7 +249,7 @@ fn spans_over<'a>(wheel: &Surface<'a>, xi: &Lanes, piece: &Piece) -> Option<Span
 /// Returns whether columns that pass a step of the envelope on their way to a piece have left the piece in front of it; where
 /// both have a point, the one in front is the outer one. If `between`, this also covers all columns between neighbouring ones.
 #[inline(always)]
-fn beyond_steps(wheel: &Surface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
+fn beyond_steps(wheel: &WheelSurface<'_>, index: usize, [xi, u]: [&Lanes; 2], between: bool) -> bool {
     let pieces = &wheel.section.pieces;
     wheel.section.steps.iter().all(|&step| {
         let before = match wheel.sides() {

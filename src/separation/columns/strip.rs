@@ -15,7 +15,7 @@ pub struct Strip {
     /// The open interval of ξ \[mm\].
     pub xi: Interval,
     /// How s at the beginning of the columns is known.
-    pub(super) gap: Gap,
+    pub(super) gap: GapStart,
     /// Number of spans.
     pub spans: usize,
     /// Number of coefficients of q.
@@ -31,7 +31,7 @@ pub struct Strip {
 
 /// How s at the beginning of a strip's columns is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Gap {
+pub enum GapStart {
     /// s is interpolated in ξ.
     Plain,
     /// g/ξ² is interpolated in ξ.
@@ -151,9 +151,9 @@ impl Strip {
         }
         let base = &mut spans[0].base;
         match self.gap {
-            Gap::Plain => {}
-            Gap::Relative => *base = lanes(|k| base[k] * (all[k] * all[k])),
-            Gap::Computed => *base = all.map(|xi| relief.midplane(xi)),
+            GapStart::Plain => {}
+            GapStart::Relative => *base = lanes(|k| base[k] * (all[k] * all[k])),
+            GapStart::Computed => *base = all.map(|xi| relief.midplane(xi)),
         }
         // With several spans, q was interpolated in powers of τ and is converted to powers of v.
         let mut end = [u_max; MANY];

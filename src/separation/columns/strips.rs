@@ -8,7 +8,7 @@
 
 use super::fit::{Fitter, polynomials};
 use super::neighbours::{MOST_SPANS, Neighbours};
-use super::strip::{Gap, Strip};
+use super::strip::{GapStart, Strip};
 use crate::numerics::chebyshev::{self, PROOF};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes, largest, smallest};
@@ -215,7 +215,7 @@ fn write(powers: &mut [f64], row: &Lanes) {
 
 /// The values at the beginnings of the spans of a strip's columns. They reveal most of the intervals that are too long.
 struct Beginnings {
-    gap: Gap,
+    gap: GapStart,
     /// The Chebyshev series of u_0 and of s, for every span.
     series: [[Lanes; 2]; MOST_SPANS],
     /// Number of leading coefficients of these series that are larger than rounding.
@@ -229,7 +229,7 @@ impl Beginnings {
     /// rounding. The first span of a `short` strip is exempt for s, which is then computed for every column.
     #[inline(always)]
     fn new(relief: &Relief<'_>, columns: &Neighbours<'_>, short: bool) -> Option<Self> {
-        let mut gap = if columns.contact { Gap::Relative } else { Gap::Plain };
+        let mut gap = if columns.contact { GapStart::Relative } else { GapStart::Plain };
         let mut judged = Judged::default();
         let mut begins = [[[0.0; MANY]; 2]; MOST_SPANS];
         let mut rounding = [0.0; MOST_SPANS];
@@ -250,7 +250,7 @@ impl Beginnings {
             let before = judged;
             judged.with(&begins[k][1], rounding[k]);
             if k == 0 && short && judged.kept().is_none() {
-                (judged, gap) = (before, Gap::Computed);
+                (judged, gap) = (before, GapStart::Computed);
             }
         }
         Some(Self { gap, series: begins, kept: judged.kept()?, rounding })

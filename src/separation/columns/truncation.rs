@@ -10,7 +10,7 @@ use crate::numerics::chebyshev;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::separation::span::SagittaPoints;
-use crate::separation::wheel_surface::Surface;
+use crate::separation::wheel_surface::WheelSurface;
 
 /// Places in a span, as shares of its u, at which the truncation error of a single column is measured. The end of the span
 /// is measured, too.
@@ -69,7 +69,7 @@ fn of_column(fitter: &mut Fitter<'_>, xi: f64, u_max: f64, needed: &mut Vec<usiz
 
 /// Finds points of columns near these shares of one span's sagittae. Returns `None` near a vertical tangent.
 #[inline(always)]
-fn points(wheel: &Surface<'_>, span: &SpanColumns<'_>, shares: &Lanes) -> Option<SagittaPoints<MANY>> {
+fn points(wheel: &WheelSurface<'_>, span: &SpanColumns<'_>, shares: &Lanes) -> Option<SagittaPoints<MANY>> {
     let (_, run) = wheel.points_near(&span.wheel, &span.wheel.u[1])?;
     Some(wheel.points_by(&span.wheel, &lanes(|k| run[k] * shares[k])))
 }

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::options::one_of;
 use super::several::SeveralArguments;
-use super::source::Source;
+use super::source::SourcedProfile;
 use crate::answer::{Outcome, complain, counted, put};
 use crate::output::{PictureFormat, refuse_taken};
 use wheelrail::error::{Error, Result};
@@ -50,8 +50,8 @@ pub(super) fn run(arguments: &AverageArguments) -> Result<Outcome> {
         Error::new("--side", "profiles without a body", "their body", "give --side rail or wheel")
     })?;
     let options = several.aligned(MeasureOptions::default())?;
-    let profiles: Vec<&Profile> = sources.iter().map(Source::profile).collect();
-    let average = average(&profiles, side, nominal.as_ref().map(Source::profile), &options)?;
+    let profiles: Vec<&Profile> = sources.iter().map(SourcedProfile::profile).collect();
+    let average = average(&profiles, side, nominal.as_ref().map(SourcedProfile::profile), &options)?;
     for finding in &average.findings {
         complain(&format!("finding: {finding}"));
     }

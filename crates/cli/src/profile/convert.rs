@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::source::{Source, SourceArguments};
+use super::source::{SourceArguments, SourcedProfile};
 use crate::answer::{Outcome, complain, counted, put};
 use wheelrail::error::{Error, Result};
 use wheelrail::measured::{CurveKind, Format, write};
@@ -73,7 +73,7 @@ fn toml(arguments: &ConvertArguments) -> Result<String> {
     Ok(text)
 }
 
-fn chosen(source: &Source) {
+fn chosen(source: &SourcedProfile) {
     let Some(curve) = source.measured().map(|measured| &measured.record.curve) else { return };
     if let (CurveKind::Arcs, Some(tolerance), Some(residual)) = (curve.kind, curve.tolerance, &curve.residual)
     {

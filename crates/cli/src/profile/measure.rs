@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::options::one_of;
 use super::several::SeveralArguments;
-use super::source::Source;
+use super::source::SourcedProfile;
 use crate::answer::{Outcome, put};
 use crate::output::{PictureFormat, refuse_taken};
 use wheelrail::case::measures_page;
@@ -16,8 +16,8 @@ use wheelrail::error::{Error, Result};
 use wheelrail::export::{OverlayPicture, SEPARATOR};
 use wheelrail::files::{read_text, write_file};
 use wheelrail::measure::{
-    GaugeFrom, Limit, Limits, MeasureOptions, Measures, Overlay, PointNoise, Row, RowColumns, csv, json,
-    measure, measure_noisy, overlay, repeated, table,
+    GaugeFrom, Limit, Limits, MeasureOptions, MeasureRow, Measures, Overlay, PointNoise, RowColumns, csv,
+    json, measure, measure_noisy, overlay, repeated, table,
 };
 use wheelrail::profile::Side;
 use wheelrail::scene;
@@ -87,8 +87,8 @@ pub(crate) struct MeasureArguments {
 }
 
 /// What is asked of every profile.
-struct Question {
-    nominal: Option<Source>,
+struct AskedMeasures {
+    nominal: Option<SourcedProfile>,
     options: MeasureOptions,
     noise: Option<PointNoise>,
 }
@@ -117,10 +117,10 @@ pub(super) fn run(arguments: &MeasureArguments) -> Result<Outcome> {
         arguments.draw(picture, &sources, &question)?;
     }
     if let Some(html) = &arguments.html {
-        let profiles = sources.iter().map(|source| source.as_ref().ok().map(Source::profile));
+        let profiles = sources.iter().map(|source| source.as_ref().ok().map(SourcedProfile::profile));
         // The row of repeats is of no profile.
         let rows: Vec<_> = rows.iter().cloned().zip(profiles.chain([None])).collect();
-        let nominal = question.nominal.as_ref().map(Source::profile);
+        let nominal = question.nominal.as_ref().map(SourcedProfile::profile);
         write_file(html, &measures_page(&rows, nominal, &question.options, columns).html())?;
     }
     let broken = limits.is_some_and(|limits| rows.iter().any(|row| !row.broken(&limits).is_empty()));
@@ -143,7 +143,7 @@ impl MeasureArguments {
         Ok(())
     }
 
-    fn question(&self) -> Result<Question> {
+    fn question(&self) -> Result<AskedMeasures> {
         let (nominal, options) = (self.several.nominal()?, self.options()?);
         // Options without meaning are not the fault of each file.
         if let Some(side) = self.several.side() {
@@ -154,11 +154,11 @@ impl MeasureArguments {
             let noise = PointNoise { sigma, step, samples, seed, curve: self.several.curve()? };
             noise.validate().map(|()| noise)
         });
-        Ok(Question { nominal, options, noise: noise.transpose()? })
+        Ok(AskedMeasures { nominal, options, noise: noise.transpose()? })
     }
 
     /// Says what values spread over, if that is asked for.
-    fn spread(&self, question: &Question) -> Option<String> {
+    fn spread(&self, question: &AskedMeasures) -> Option<String> {
         if self.repeats {
             return Some("over the repeats; 95 % of further measurements".into());
         }
@@ -168,26 +168,31 @@ impl MeasureArguments {
     }
 
     /// Measures all profiles.
-    fn rows(&self, sources: &[Result<Source>], question: &Question) -> Result<Vec<Row>> {
-        let row = |(file, source): (&String, &Result<Source>)| {
+    fn rows(&self, sources: &[Result<SourcedProfile>], question: &AskedMeasures) -> Result<Vec<MeasureRow>> {
+        let row = |(file, source): (&String, &Result<SourcedProfile>)| {
             let side = source.as_ref().ok().and_then(|read| read.side).or(self.several.side());
             let measured =
                 source.as_ref().map_err(Clone::clone).and_then(|read| measured(file, read, side, question));
-            Row { file: file.clone(), side, measured }
+            MeasureRow { file: file.clone(), side, measured }
         };
-        let mut rows: Vec<Row> = self.several.files.par_iter().zip(sources).map(row).collect();
+        let mut rows: Vec<MeasureRow> = self.several.files.par_iter().zip(sources).map(row).collect();
         if self.repeats {
             self.several.body(sources.iter().flatten())?;
             let own: Vec<&Measures> = rows.iter().flat_map(|row| &row.measured).collect();
             let mean = repeated(&own)?;
             let file = format!("mean of {} repeats", own.len());
-            rows.push(Row { file, side: Some(mean.side), measured: Ok(mean) });
+            rows.push(MeasureRow { file, side: Some(mean.side), measured: Ok(mean) });
         }
         Ok(rows)
     }
 
     /// Draws the picture of a single profile over its nominal one.
-    fn draw(&self, picture: &Path, sources: &[Result<Source>], question: &Question) -> Result<()> {
+    fn draw(
+        &self,
+        picture: &Path,
+        sources: &[Result<SourcedProfile>],
+        question: &AskedMeasures,
+    ) -> Result<()> {
         let [own] = sources else {
             let found = format!("{} profiles", sources.len());
             return Err(Error::new("--picture", found, "a single profile", "give one profile a picture"));
@@ -223,8 +228,13 @@ impl MeasureArguments {
     }
 }
 
-fn measured(file: &str, source: &Source, side: Option<Side>, question: &Question) -> Result<Measures> {
-    let Question { nominal, options, noise } = question;
+fn measured(
+    file: &str,
+    source: &SourcedProfile,
+    side: Option<Side>,
+    question: &AskedMeasures,
+) -> Result<Measures> {
+    let AskedMeasures { nominal, options, noise } = question;
     let nominal = nominal.as_ref();
     let Some(side) = side else {
         let expected = "the body that it is of";
@@ -235,7 +245,7 @@ fn measured(file: &str, source: &Source, side: Option<Side>, question: &Question
         let found = format!("a {} beside a {} as nominal", word(side), word(other));
         return Err(Error::new(file, found, "one body", "give the nominal of this body"));
     }
-    let (profile, nominal) = (source.profile(), nominal.map(Source::profile));
+    let (profile, nominal) = (source.profile(), nominal.map(SourcedProfile::profile));
     let measures = match noise {
         None => measure(profile, side, nominal, options)?,
         Some(noise) => measure_noisy(profile, side, nominal, options, noise)?,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::source::{Source, SourceArguments};
+use super::source::{SourceArguments, SourcedProfile};
 use crate::answer::{Outcome, print};
 use crate::output::PictureFormat;
 use wheelrail::case::{about_profile, profile_picture};
@@ -20,7 +20,7 @@ pub(super) fn plot(arguments: &SourceArguments, out: Option<&Path>) -> Result<Ou
     }
 }
 
-fn picture(source: &Source) -> String {
+fn picture(source: &SourcedProfile) -> String {
     let (profile, measured) = (source.profile(), source.measured());
     let points: Vec<[f64; 2]> =
         measured.map_or_else(Vec::new, |measured| measured.points.iter().map(|p| p.xz()).collect());

@@ -6,7 +6,7 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::options::{BodyOption, MeasuredArguments, one_of};
-use super::source::{Source, SourceArguments};
+use super::source::{SourceArguments, SourcedProfile};
 use crate::range::interval;
 use wheelrail::error::{Error, Result};
 use wheelrail::measure::MeasureOptions;
@@ -50,7 +50,7 @@ impl SeveralArguments {
     }
 
     /// Reads all profiles, each with its error.
-    pub(super) fn sources(&self) -> Vec<Result<Source>> {
+    pub(super) fn sources(&self) -> Vec<Result<SourcedProfile>> {
         self.files.par_iter().map(|file| self.source(file, self.measured.clone())).collect()
     }
 
@@ -58,13 +58,13 @@ impl SeveralArguments {
     ///
     /// # Errors
     /// A name or file that is no profile.
-    pub(super) fn nominal(&self) -> Result<Option<Source>> {
+    pub(super) fn nominal(&self) -> Result<Option<SourcedProfile>> {
         let nominal = self.nominal.as_ref();
         let read = nominal.map(|name| self.source(name, MeasuredArguments::default()));
         read.transpose().map_err(|error| error.within("--nominal"))
     }
 
-    fn source(&self, name: &str, measured: MeasuredArguments) -> Result<Source> {
+    fn source(&self, name: &str, measured: MeasuredArguments) -> Result<SourcedProfile> {
         SourceArguments { profile: name.to_owned(), side: self.side, measured }.read_as(CURVE)
     }
 
@@ -97,7 +97,10 @@ impl SeveralArguments {
     ///
     /// # Errors
     /// Wheels and rails.
-    pub(super) fn body<'a>(&self, sources: impl IntoIterator<Item = &'a Source>) -> Result<Option<Side>> {
+    pub(super) fn body<'a>(
+        &self,
+        sources: impl IntoIterator<Item = &'a SourcedProfile>,
+    ) -> Result<Option<Side>> {
         let mut side = self.side();
         for source in sources {
             match (side, source.side) {

@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
-use super::source::Source;
+use super::source::SourcedProfile;
 use crate::answer::counted;
 use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record};
 use wheelrail::profile::{Profile, Shape};
 
 /// Returns the description of a profile: name and source; how a measured file was read and fitted; segments and joints. The
 /// spans of a spline are left out, because there are as many as points.
-pub(super) fn show(source: &Source) -> String {
+pub(super) fn show(source: &SourcedProfile) -> String {
     let profile = source.profile();
     // Writing to a string cannot fail, neither here nor below.
     let mut out = format!("# {}\n# {}\n", profile.name, profile.source);

@@ -25,13 +25,13 @@ pub(crate) struct SourceArguments {
 
 /// A profile, with what is known about it.
 #[derive(Debug)]
-pub(super) struct Source {
+pub(super) struct SourcedProfile {
     /// Body of the profile, if it is known.
     pub side: Option<Side>,
     pub content: ProfileSource,
 }
 
-impl Source {
+impl SourcedProfile {
     pub(super) fn profile(&self) -> &Profile {
         self.content.profile()
     }
@@ -61,7 +61,7 @@ impl SourceArguments {
     ///
     /// # Errors
     /// An unknown name; anything that is wrong with a file or its options.
-    pub(super) fn read(&self) -> Result<Source> {
+    pub(super) fn read(&self) -> Result<SourcedProfile> {
         self.read_as(None)
     }
 
@@ -69,7 +69,7 @@ impl SourceArguments {
     ///
     /// # Errors
     /// The errors of [`SourceArguments::read`].
-    pub(super) fn read_as(&self, curve: Option<CurveKind>) -> Result<Source> {
+    pub(super) fn read_as(&self, curve: Option<CurveKind>) -> Result<SourcedProfile> {
         let path = Path::new(&self.profile);
         if !path.exists() {
             return self.built_in();
@@ -82,10 +82,10 @@ impl SourceArguments {
         }
         let options = Options { curve: options.curve.or(curve.filter(|_| !drawn)), ..options };
         let content = scene::read_profile(path, side, &options)?;
-        Ok(Source { side: side.or_else(|| Format::body_of_file(&self.profile)), content })
+        Ok(SourcedProfile { side: side.or_else(|| Format::body_of_file(&self.profile)), content })
     }
 
-    fn built_in(&self) -> Result<Source> {
+    fn built_in(&self) -> Result<SourcedProfile> {
         let rail = standards::rail_names().any(|name| name == self.profile);
         let named = standards::wheel(&self.profile);
         if !rail && named.is_err() && !self.profile.starts_with("EN13715-") {
@@ -107,6 +107,6 @@ impl SourceArguments {
             ));
         }
         let profile = if rail { standards::rail(&self.profile)? } else { named? };
-        Ok(Source { side: Some(side), content: ProfileSource::Drawn(profile) })
+        Ok(SourcedProfile { side: Some(side), content: ProfileSource::Drawn(profile) })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::table::SweepTable;
 use crate::answer::counted;
-use wheelrail::case::{Case, Columns, curves, joined_pair, sweep_page};
+use wheelrail::case::{Case, SweepColumns, curves, joined_pair, sweep_page};
 use wheelrail::error::Result;
 use wheelrail::export::{CurvesPicture, SweepPage};
 
@@ -10,7 +10,7 @@ use wheelrail::export::{CurvesPicture, SweepPage};
 /// `gauge` is that of the track \[mm\], if it is known.
 pub(super) fn picture(
     table: &SweepTable,
-    drawn: &Columns,
+    drawn: &SweepColumns,
     case: &Case,
     gauge: Option<f64>,
 ) -> Result<CurvesPicture> {
@@ -21,7 +21,7 @@ pub(super) fn picture(
 }
 
 /// Makes the page of a table's drawn positions; their lateral displacements have to ascend.
-pub(super) fn page(table: &SweepTable, drawn: &Columns, case: &Case) -> Result<SweepPage> {
+pub(super) fn page(table: &SweepTable, drawn: &SweepColumns, case: &Case) -> Result<SweepPage> {
     sweep_page(case, table.system, drawn, &table.drawn_lateral(), &about(table))
 }
 

@@ -21,7 +21,7 @@ use wheelrail::search::Position;
 const MOST_POSITIONS: usize = 5000;
 
 /// A position whose folders have been written.
-struct Written {
+struct WrittenPosition {
     position: Position,
     /// Names of the folders; none for a position without contact.
     folders: Vec<String>,
@@ -72,7 +72,7 @@ fn patch(
     table: &SweepTable,
     position: &Position,
     name: &str,
-) -> Result<Written> {
+) -> Result<WrittenPosition> {
     let position = *position;
     let place = Place::Wheelset { system: Arc::clone(table.system), position };
     let roll_by_load = case.standing().roll_by_load;
@@ -81,27 +81,27 @@ fn patch(
     let here = case.at(standing, scene::echo(&scene.at(&position), name)).as_one_of_many();
     let run = match Run::new(here, SILENT) {
         Err(error) if error.kind == ErrorKind::NoContact => {
-            return Ok(Written { position, folders: Vec::new() });
+            return Ok(WrittenPosition { position, folders: Vec::new() });
         }
         run => run?.filed_under(name),
     };
     case::write(&run, folder, Some(png), SILENT)?;
-    Ok(Written { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
+    Ok(WrittenPosition { position, folders: run.parts.into_iter().map(|part| part.site.folder).collect() })
 }
 
 /// Returns the files with the separation of every part of a position.
-fn every_part(written: &Written) -> Vec<String> {
+fn every_part(written: &WrittenPosition) -> Vec<String> {
     written.folders.iter().map(|folder| format!("{folder}/separation.vts")).collect()
 }
 
 /// Returns the file with the wheelset on its track at a position.
-fn wheelset(written: &Written) -> Vec<String> {
+fn wheelset(written: &WrittenPosition) -> Vec<String> {
     written.folders.first().map(|folder| format!("{folder}/wheelset.vtm")).into_iter().collect()
 }
 
 /// Returns the collection of files of every position over time. Time is the lateral displacement if it always grows, else the
 /// number of the position.
-fn collection(written: &[Written], files: fn(&Written) -> Vec<String>) -> String {
+fn collection(written: &[WrittenPosition], files: fn(&WrittenPosition) -> Vec<String>) -> String {
     let grows = written.windows(2).all(|pair| pair[0].position.lateral < pair[1].position.lateral);
     let mut steps = Vec::new();
     for (k, written) in written.iter().enumerate() {
@@ -111,10 +111,10 @@ fn collection(written: &[Written], files: fn(&Written) -> Vec<String>) -> String
     collection_pvd(&steps)
 }
 
-fn summary(scene: &Scene, hash: &str, written: &[Written]) -> Vec<u8> {
+fn summary(scene: &Scene, hash: &str, written: &[WrittenPosition]) -> Vec<u8> {
     let positions: Vec<Value> = written
         .iter()
-        .map(|Written { position, folders }| {
+        .map(|WrittenPosition { position, folders }| {
             let scene = scene.at(position);
             let roll = scene.wheelset.map(|wheelset| wheelset.roll);
             json!({ "lateral_mm": position.lateral, "yaw_rad": position.yaw, "roll": roll, "folders": folders })

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::super::progress::Progress;
-use wheelrail::case::{ApproachBy, Columns, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, Tally};
+use wheelrail::case::{ApproachBy, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, SweepColumns, Tally};
 use wheelrail::error::Result;
 use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 
@@ -23,14 +23,14 @@ pub(super) struct SweepTable<'a> {
 
 /// What chunks of positions become.
 #[derive(Default)]
-pub(super) struct Swept {
+pub(super) struct SweptChunks {
     /// Of one position.
-    columns: Columns,
+    columns: SweepColumns,
     text: String,
     /// The doubts of all positions.
     pub doubts: Tally,
     /// The contacts of the positions that are drawn, which are numbered among themselves.
-    pub drawn: Columns,
+    pub drawn: SweepColumns,
 }
 
 impl SweepTable<'_> {
@@ -40,10 +40,10 @@ impl SweepTable<'_> {
         &self,
         progress: &Progress,
         mut sink: impl FnMut(&str) -> Result<bool>,
-    ) -> Result<Swept> {
-        let (start, all, mut swept) = (Instant::now(), self.positions.len(), Swept::default());
+    ) -> Result<SweptChunks> {
+        let (start, all, mut swept) = (Instant::now(), self.positions.len(), SweptChunks::default());
         progress.at(format!("0 of {all} positions"));
-        if !sink(&Columns::csv_head())? {
+        if !sink(&SweepColumns::csv_head())? {
             return Ok(swept);
         }
         let (conicity, stride) = (self.conicity.as_ref(), self.stride());
@@ -54,8 +54,8 @@ impl SweepTable<'_> {
             positions: &self.positions,
         };
         // One position at a time becomes columns, and these text: threads share the work.
-        let make = |chunk: &mut Swept, position: usize, rows: &[_]| {
-            let Swept { columns, text, doubts, drawn } = chunk;
+        let make = |chunk: &mut SweptChunks, position: usize, rows: &[_]| {
+            let SweptChunks { columns, text, doubts, drawn } = chunk;
             columns.clear();
             let push = |(row, found): &(&_, ContactDoubts)| {
                 columns.push(position, row, self.ellipses, found.kinds());
@@ -67,7 +67,7 @@ impl SweepTable<'_> {
             columns.append_csv(text);
             Ok(())
         };
-        sweep.blocks(make, |done, chunks: Vec<Swept>| {
+        sweep.blocks(make, |done, chunks: Vec<SweptChunks>| {
             for chunk in &chunks {
                 swept.doubts.join(&chunk.doubts);
                 swept.drawn.extend(&chunk.drawn);

@@ -10,7 +10,7 @@ use wheelrail::load::{Elastic, effective_modulus};
 use wheelrail::mesh::{GridGroup, groups};
 use wheelrail::separation::Evaluator;
 use wheelrail::{Interval, Window};
-use wheelrail_report::loads::{Carried, Solved, carried};
+use wheelrail_report::loads::{CarriedRegion, Solved, carried};
 
 /// The page that holds the table.
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../src/docs/loads.md");
@@ -31,7 +31,7 @@ const PRESSURE_BOUNDS: [f64; 3] = [0.01, 0.005, 2.5e-3];
 const SAME: [f64; 2] = [1e-4, 1e-3];
 
 /// Writes s of a region on cells so many times as fine as those of the automatic grid, over it or over a box \[mm\].
-fn write_grid(dir: &Path, region: &Carried, finer: f64, within: Option<Window>) {
+fn write_grid(dir: &Path, region: &CarriedRegion, finer: f64, within: Option<Window>) {
     let contact = &region.site.contact;
     let group = &groups(contact.whole_patch().unwrap(), 0.0, None)[0];
     let spacing = group.axes(None).unwrap().spacing.map(|step| step / finer);
@@ -70,7 +70,7 @@ fn extent(pressure: &PartPressure) -> Window {
 }
 
 /// The data as it should be, and the rows of the table.
-fn texts(regions: &[Carried]) -> [String; 2] {
+fn texts(regions: &[CarriedRegion]) -> [String; 2] {
     let mut data =
         String::from("pair,offset_mm,yaw_rad,load_n,contact,normal_load_n,approach_mm,peak_mpa,area_mm2\n");
     let mut table = String::new();
@@ -102,7 +102,7 @@ fn texts(regions: &[Carried]) -> [String; 2] {
 
 /// Compares the data with what Tamaas finds, and puts that in their place.
 fn differing(
-    regions: &mut [Carried],
+    regions: &mut [CarriedRegion],
     solved: &BTreeMap<usize, Solved>,
     of: fn(&mut Solved) -> &mut f64,
     most: f64,

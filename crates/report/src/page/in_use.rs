@@ -4,7 +4,7 @@ use super::section::PageSection;
 use crate::loads::{ApproachError, LoadCost};
 use crate::measurements::Measurements;
 use crate::practice::PracticeRow;
-use crate::rates::{Motion, Rate};
+use crate::rates::{Freedoms, Rate};
 use crate::table::{cases_csv, markdown, positions_csv, practice_csv};
 use crate::whole_case::{PARTS, WholeCase};
 
@@ -80,7 +80,7 @@ pub(super) fn cost_table(costs: &[LoadCost]) -> String {
 /// Returns the table of rates, one row per pair: rates, and their ratio to that of drawn arcs.
 pub(super) fn rate_table(m: &Measurements) -> String {
     let mut head = vec!["pair".to_string()];
-    for motion in Motion::ALL {
+    for motion in Freedoms::ALL {
         head.extend([format!("{}, positions/s", motion.name()), "drawn over this".into()]);
     }
     head.extend(["conicity table, s".into(), "searches".into(), "estimated error".into()]);
@@ -90,12 +90,12 @@ pub(super) fn rate_table(m: &Measurements) -> String {
     pairs.dedup();
     let row = |pair: &str| {
         let mut cells = vec![pair.to_string()];
-        for motion in Motion::ALL {
+        for motion in Freedoms::ALL {
             let rate = of(pair, motion).map_or(f64::NAN, Rate::rate);
             let ratio = drawn(motion).map_or(f64::NAN, Rate::rate) / rate;
             cells.extend([format!("{rate:.0}"), format!("{ratio:.2}")]);
         }
-        cells.extend(of(pair, Motion::Lateral).map_or_else(Vec::new, |row| {
+        cells.extend(of(pair, Freedoms::Lateral).map_or_else(Vec::new, |row| {
             vec![
                 format!("{:.4}", row.table_seconds),
                 row.searches.to_string(),

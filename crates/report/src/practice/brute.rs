@@ -15,7 +15,7 @@ pub(super) struct Stance {
 
 /// A pair as vertices.
 #[derive(Debug)]
-pub(super) struct Bodies {
+pub(super) struct PairOfVertices {
     pub rail: Vec<Vertex>,
     pub wheel: Vec<Vertex>,
     pub radius: f64,
@@ -23,7 +23,7 @@ pub(super) struct Bodies {
 
 /// First touch of a pair.
 #[derive(Debug)]
-pub(super) struct Lowered {
+pub(super) struct FirstTouch {
     /// Height of the wheel's profile origin over the rail's \[mm\].
     pub height: f64,
     rail: Polyline,
@@ -37,13 +37,13 @@ const TURN: f64 = 5e-4;
 /// Angle \[rad\] about the axle to which the edge of a wheel's end is followed.
 const EDGE: f64 = 0.06;
 
-impl Bodies {
+impl PairOfVertices {
     pub fn new(pair: &Pair) -> Self {
         Self { rail: vertices(pair.rail()), wheel: vertices(pair.wheel()), radius: pair.wheel_radius() }
     }
 
     /// Lowers the wheel; `None` if it is not over its rail.
-    pub fn lowered(&self, standing: &Stance) -> Option<Lowered> {
+    pub fn lowered(&self, standing: &Stance) -> Option<FirstTouch> {
         let rail = Polyline::new(self.rail.iter().map(|v| [v.x, v.z]).collect(), Facing::Up);
         let wheel = Polyline::new(self.outline(standing), Facing::Down);
         let mut x: Vec<f64> = rail.abscissae().chain(wheel.abscissae()).collect();
@@ -52,7 +52,7 @@ impl Bodies {
         let mut gaps: Vec<[f64; 2]> = x.into_iter().filter_map(over).collect();
         let least = gaps.iter().map(|gap| gap[1]).fold(f64::INFINITY, f64::min);
         gaps.iter_mut().for_each(|gap| gap[1] -= least);
-        (!gaps.is_empty()).then_some(Lowered { height: -least, rail, wheel, gaps })
+        (!gaps.is_empty()).then_some(FirstTouch { height: -least, rail, wheel, gaps })
     }
 
     /// Returns the outline of the wheel along the rail, with its profile origin at height 0: the points where
@@ -111,7 +111,7 @@ impl Bodies {
     }
 }
 
-impl Lowered {
+impl FirstTouch {
     /// Returns the gap at first touch at one abscissa \[mm\].
     pub fn gap(&self, x: f64) -> Option<f64> {
         Some(self.wheel.height(x)? - self.rail.height(x)? + self.height)

@@ -1,6 +1,6 @@
 //! Checks one placed pair against brute force.
 
-use super::brute::{Bodies, Stance};
+use super::brute::{PairOfVertices, Stance};
 use super::fill::filled;
 use super::row::PracticeRow;
 use crate::random::Random;
@@ -36,7 +36,7 @@ const SELECTION: Selection = Selection { within: WITHIN, apart: ONE_CONTACT };
 
 /// Checks a single wheel: its contacts, and the patch around the first.
 pub(super) fn wheel(pair: &Pair, offset: f64, yaw: f64, approach: f64, row: &mut PracticeRow) -> Result<()> {
-    let bodies = Bodies::new(pair);
+    let bodies = PairOfVertices::new(pair);
     let profiles = ProfilePair::new(pair)?;
     let mut search = profiles.search();
     let touch = search.touch(&Pose::new(offset, yaw, 0.0)?, &SELECTION)?;
@@ -52,7 +52,7 @@ pub(super) fn wheelset(
     approach: f64,
     row: &mut PracticeRow,
 ) -> Result<()> {
-    let bodies = Bodies::new(pair);
+    let bodies = PairOfVertices::new(pair);
     let system = WheelsetOnTrack::new(pair, GAUGE, WHEELS)?;
     let mut search = system.search();
     let position = Position { lateral, yaw, roll: Roll::Solve };
@@ -77,7 +77,7 @@ pub(super) fn sweep(
     amplitude: f64,
     row: &mut PracticeRow,
 ) -> Result<()> {
-    let bodies = Bodies::new(pair);
+    let bodies = PairOfVertices::new(pair);
     let system = WheelsetOnTrack::new(pair, GAUGE, WHEELS)?;
     let mut search = system.search();
     for &lateral in positions {
@@ -118,7 +118,7 @@ fn standing(system: &WheelsetOnTrack, position: &Position, roll: f64, sign: f64)
 }
 
 /// Compares height, contacts and near misses of one side.
-fn contacts(bodies: &Bodies, standing: &Stance, touch: &Touch, name: &str, row: &mut PracticeRow) {
+fn contacts(bodies: &PairOfVertices, standing: &Stance, touch: &Touch, name: &str, row: &mut PracticeRow) {
     let Some(lowered) = bodies.lowered(standing) else {
         row.failures.push(format!("{name}brute force finds no wheel over the rail"));
         return;
@@ -148,7 +148,7 @@ fn contacts(bodies: &Bodies, standing: &Stance, touch: &Touch, name: &str, row: 
 /// Compares the patch around a contact, its automatic grid, and s at random points of it.
 fn patch(
     pair: &Pair,
-    bodies: &Bodies,
+    bodies: &PairOfVertices,
     contact: Option<&Contact>,
     approach: f64,
     name: &str,
@@ -201,7 +201,13 @@ fn ring(placement: &Placement, approach: f64, grid: &mesh::Axes, name: &str, row
 }
 
 /// Compares s at random points of a window.
-fn separations(bodies: &Bodies, placement: &Placement, window: &Window, name: &str, row: &mut PracticeRow) {
+fn separations(
+    bodies: &PairOfVertices,
+    placement: &Placement,
+    window: &Window,
+    name: &str,
+    row: &mut PracticeRow,
+) {
     let mut random = Random::new(POINTS as u64);
     let mut evaluator = Evaluator::new(placement);
     let mut compared = 0;

@@ -94,10 +94,10 @@ fn usual_approach() -> f64 {
 /// A fault of the table.
 pub fn cases() -> Result<Vec<PracticeCase>> {
     #[derive(Deserialize)]
-    struct Table {
+    struct PracticeTable {
         case: Vec<PracticeCase>,
     }
-    let table: Table = toml::from_str(include_str!("cases.toml"))
+    let table: PracticeTable = toml::from_str(include_str!("cases.toml"))
         .map_err(|e| Error::new("practice/cases.toml", e.to_string(), "a table of cases", "correct it"))?;
     Ok(table.case)
 }

@@ -20,7 +20,7 @@ const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// A place where a side touches, or nearly touches, at one displacement y of the wheelset.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Branch {
+pub(super) struct TouchBranch {
     /// Vertical gap \[mm\].
     pub gap: f64,
     /// Height of the axle's middle \[mm\] at which this side touches.
@@ -34,7 +34,7 @@ pub(super) struct Branch {
 }
 
 /// The places of the left and the right side, by ascending gap.
-pub(super) type Sides = [Vec<Branch>; 2];
+pub(super) type SideBranches = [Vec<TouchBranch>; 2];
 
 /// Searches at one displacement after another.
 pub(super) struct Searched<'a> {
@@ -52,7 +52,7 @@ impl<'a> Searched<'a> {
     ///
     /// # Errors
     /// A displacement or roll that is not finite.
-    pub(super) fn at(&mut self, lateral: f64, sides: &mut Sides) -> Result<bool> {
+    pub(super) fn at(&mut self, lateral: f64, sides: &mut SideBranches) -> Result<bool> {
         let position = Position { lateral, yaw: 0.0, roll: self.roll };
         let Some(touch) = self.search.touch_near(&position, &NEAR, None)? else { return Ok(false) };
         let arms = [0, 1].map(|k| Arm::new(self.system, lateral, k, &touch.sides[k]));
@@ -76,7 +76,7 @@ impl Searched<'_> {
     ///
     /// # Errors
     /// The errors of [`Searched::at`].
-    pub(super) fn mirrored(&mut self, lateral: f64, sides: &mut Sides) -> Result<bool> {
+    pub(super) fn mirrored(&mut self, lateral: f64, sides: &mut SideBranches) -> Result<bool> {
         let found = self.at(lateral, sides)?;
         sides.swap(0, 1);
         for place in sides.iter_mut().flatten() {
@@ -91,7 +91,7 @@ impl Searched<'_> {
     /// # Errors
     /// The errors of [`Searched::at`].
     pub(super) fn centre(&mut self, amplitude: f64) -> Result<Option<f64>> {
-        let mut sides = Sides::default();
+        let mut sides = SideBranches::default();
         let mut failure = None;
         let mut difference = |y: f64| match self.at(y, &mut sides) {
             Ok(true) => sides[1][0].radius - sides[0][0].radius,
@@ -142,12 +142,12 @@ impl Arm {
     }
 
     /// Makes the branch of a contact; `turn` is the rate of the track's roll with y \[rad/mm\].
-    fn branch(&self, contact: &Contact, turn: f64) -> Branch {
+    fn branch(&self, contact: &Contact, turn: f64) -> TouchBranch {
         let [slope, rise] = self.turning(contact);
         let turn = self.sign * turn;
         // The wheel's material at the contact moves across by this much with y.
         let across = self.sign + turn * (self.origin[1] + contact.rail_z);
-        Branch {
+        TouchBranch {
             gap: contact.gap,
             height: self.height,
             climb: self.sign * slope + rise * turn,

@@ -58,7 +58,7 @@ pub(super) struct Movement {
     /// Sum of the squares of the defects up to each knot \[mm⁴\]: errors of cells are independent.
     squares: Vec<f64>,
     /// Blocks as a heap: block k consists of blocks 2k and 2k + 1, the last half are the smallest.
-    blocks: Vec<Block>,
+    blocks: Vec<CellBlock>,
 }
 
 /// The time of a quarter of the movement.
@@ -72,7 +72,7 @@ pub(super) struct Quarter {
 
 /// Several cells together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Block {
+struct CellBlock {
     /// Middle c of the range of E \[mm²\].
     centre: f64,
     /// Half width r of the range of E \[mm²\].
@@ -84,7 +84,7 @@ struct Block {
 }
 
 /// The time of one movement while it is summed over cells and blocks.
-struct Sum<'m> {
+struct TimeSum<'m> {
     movement: &'m Movement,
     /// Number of cells below the one with the turning point.
     below: usize,
@@ -156,7 +156,7 @@ impl Movement {
         // The table is exact at its knots: from there the error of the integral grows with the square of the
         // distance.
         let defect = share * share * (3.0 - 2.0 * share) * outer.defect;
-        let mut sum = Sum {
+        let mut sum = TimeSum {
             movement: self,
             below: cell,
             total: self.energy[cell] + gained,
@@ -169,7 +169,7 @@ impl Movement {
     }
 
     /// Makes the block at a place of the heap, whose last half begins at `smallest`.
-    fn block(&self, place: usize, smallest: usize) -> Block {
+    fn block(&self, place: usize, smallest: usize) -> CellBlock {
         let depth = place.max(1).ilog2();
         let cells = (smallest >> depth) * SMALLEST;
         let first = ((place - (1 << depth).min(place)) * cells).min(self.cells());
@@ -180,7 +180,7 @@ impl Movement {
         for k in first..last {
             self.add_moments(k, centre, radius, &mut moments);
         }
-        Block { centre, radius, moments, squares: self.squares[first + (last - first) / 2] }
+        CellBlock { centre, radius, moments, squares: self.squares[first + (last - first) / 2] }
     }
 
     fn add_moments(&self, cell: usize, centre: f64, radius: f64, moments: &mut [f64; TERMS]) {
@@ -200,7 +200,7 @@ impl Movement {
     }
 }
 
-impl Sum<'_> {
+impl TimeSum<'_> {
     /// Adds the first `cells` cells of a block that lie below the turning point's cell; `None` if the speed
     /// drops to zero.
     fn add(&mut self, place: usize, first: usize, cells: usize) -> Option<()> {

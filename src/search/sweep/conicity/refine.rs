@@ -2,7 +2,7 @@
 
 use std::collections::BinaryHeap;
 
-use super::branches::{Branch, Sides};
+use super::branches::{SideBranches, TouchBranch};
 use super::movement::Knot;
 use crate::error::Result;
 
@@ -63,7 +63,7 @@ struct Node {
 
 /// The stretch between two nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Cell {
+struct BetweenNodes {
     ends: [Node; 2],
     /// Mean of |Δr| from 0 to this cell \[mm\].
     scale: f64,
@@ -75,19 +75,19 @@ struct Cell {
 
 /// The table while it is refined.
 #[derive(Debug)]
-pub(super) struct Table<F> {
+pub(super) struct RefinedTable<F> {
     /// Fills in the places of contact at a displacement; returns false off the track.
     search: F,
-    sides: Sides,
+    sides: SideBranches,
     searches: usize,
     most: usize,
-    cells: Vec<Cell>,
+    cells: Vec<BetweenNodes>,
     /// Cells that are not fine enough, as (bits of the influence, index): the bits order as non-negative
     /// numbers do.
     waiting: BinaryHeap<(u64, usize)>,
 }
 
-impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
+impl<F: FnMut(f64, &mut SideBranches) -> Result<bool>> RefinedTable<F> {
     /// Tabulates Δr at equal steps up to the amplitude, or as far as the track goes.
     ///
     /// # Errors
@@ -95,7 +95,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
     pub(super) fn new(search: F, amplitude: f64, accuracy: f64) -> Result<Self> {
         let mut table = Self {
             search,
-            sides: Sides::default(),
+            sides: SideBranches::default(),
             searches: 0,
             most: most_searches(amplitude, accuracy),
             cells: Vec::new(),
@@ -107,7 +107,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         for k in 1..=steps as u64 {
             let Some(next) = table.searched(amplitude * k as f64 / steps)? else { break };
             mean += (next.value.abs() - mean) / k as f64;
-            table.push(Cell::new([last, next], mean));
+            table.push(BetweenNodes::new([last, next], mean));
             last = next;
         }
         table.most = table.most.min(most_searches(last.y, accuracy));
@@ -139,7 +139,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
     /// Returns the table in order of y: the ends of every cell, once where Δr does not jump, and places between them where
     /// Δr bends. Chords of a bend all err to one side, so that the error of a smooth Δr would add up over all cells.
     pub(super) fn knots(&self) -> Vec<Knot> {
-        let mut cells: Vec<&Cell> = self.cells.iter().collect();
+        let mut cells: Vec<&BetweenNodes> = self.cells.iter().collect();
         cells.sort_unstable_by(|a, b| a.ends[0].y.total_cmp(&b.ends[0].y));
         let mut knots = Vec::with_capacity(2 * cells.len());
         for cell in cells {
@@ -180,7 +180,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
             Some(parts) => parts,
             None => {
                 let tries = if hopped { cell.tries + 1 } else { 0 };
-                let part = |ends| Cell { tries, ..Cell::new(ends, cell.scale) };
+                let part = |ends| BetweenNodes { tries, ..BetweenNodes::new(ends, cell.scale) };
                 [part([from, middle]), part([middle, to])]
             }
         };
@@ -192,7 +192,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
 
     /// Returns the parts of a cell below and above a hop that was seen from y; `None` if the hop is outside
     /// the cell: a hop that one end predicts may be the one at which the other end was placed.
-    fn at_hop(&self, cell: &Cell, y: f64, way: usize, hop: Hop) -> Option<[Cell; 2]> {
+    fn at_hop(&self, cell: &BetweenNodes, y: f64, way: usize, hop: Hop) -> Option<[BetweenNodes; 2]> {
         let [from, to] = cell.ends;
         let place = if way == 0 { y - hop.distance } else { y + hop.distance };
         if place <= from.y || place >= to.y {
@@ -204,14 +204,15 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
         if way == 0 {
             nodes.swap(0, 1);
         }
-        let mut parts = [Cell::new([from, nodes[0]], cell.scale), Cell::new([nodes[1], to], cell.scale)];
+        let mut parts =
+            [BetweenNodes::new([from, nodes[0]], cell.scale), BetweenNodes::new([nodes[1], to], cell.scale)];
         // The slopes are those at y: the place is wrong by a share of the distance.
         let defect = hop.jump.abs() * hop.distance * hop.distance / (to.y - from.y);
         parts[0].defect += defect;
         Some(parts)
     }
 
-    fn push(&mut self, cell: Cell) {
+    fn push(&mut self, cell: BetweenNodes) {
         self.cells.push(cell);
         self.wait(self.cells.len() - 1);
     }
@@ -228,7 +229,7 @@ impl<F: FnMut(f64, &mut Sides) -> Result<bool>> Table<F> {
 impl Node {
     /// Makes the node at `y` from a search at `found` beside it, with the `chosen` place of each side in
     /// touch.
-    fn new(sides: &Sides, chosen: [usize; 2], found: f64, y: f64) -> Self {
+    fn new(sides: &SideBranches, chosen: [usize; 2], found: f64, y: f64) -> Self {
         let [left, right] = [0, 1].map(|side| sides[side][chosen[side]]);
         let (slope, off) = (right.growth - left.growth, y - found);
         let value = right.radius - left.radius;
@@ -259,7 +260,7 @@ impl Node {
 
 /// Returns the direction in which the gap of another place closes while one touches, and the distance from
 /// `off` beside the search.
-fn closing(touching: &Branch, other: &Branch, off: f64) -> Option<(usize, f64)> {
+fn closing(touching: &TouchBranch, other: &TouchBranch, off: f64) -> Option<(usize, f64)> {
     let (gap, rate) = (other.gap - touching.gap, touching.climb - other.climb);
     let way = usize::from(rate < 0.0);
     let at = -gap / rate - off;
@@ -267,7 +268,7 @@ fn closing(touching: &Branch, other: &Branch, off: f64) -> Option<(usize, f64)> 
     at.is_finite().then(|| (way, distance.max(0.0)))
 }
 
-impl Cell {
+impl BetweenNodes {
     fn new(ends: [Node; 2], scale: f64) -> Self {
         let mut cell = Self { ends, scale, defect: 0.0, tries: 0 };
         cell.defect = cell.width() * (cell.bend() + cell.unexplained() / 2.0) + cell.hopped();

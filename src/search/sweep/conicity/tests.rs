@@ -1,7 +1,7 @@
 use nalgebra::UnitComplex;
 use std::f64::consts::PI;
 
-use super::branches::{Branch, Sides};
+use super::branches::{SideBranches, TouchBranch};
 use super::movement::Knot;
 use super::*;
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
@@ -75,8 +75,8 @@ fn slopes_are_those_of_the_next_positions() -> Result<()> {
     const STEP: f64 = 1e-4;
     for roll in [Roll::Neglect, Roll::Solve] {
         let mut searched = Searched::new(&system, roll);
-        let mut at = |y: f64| -> Result<[Branch; 2]> {
-            let mut sides = Sides::default();
+        let mut at = |y: f64| -> Result<[TouchBranch; 2]> {
+            let mut sides = SideBranches::default();
             assert!(searched.at(y, &mut sides)?);
             Ok([sides[0][0], sides[1][0]])
         };
@@ -130,9 +130,9 @@ impl SawTooth {
     }
 
     /// Returns the two teeth beside y as places of contact; the gap of the next one closes at the rate 0.02.
-    fn places(&self, y: f64, sides: &mut Sides) {
+    fn places(&self, y: f64, sides: &mut SideBranches) {
         let height = 0.02 * (self.tooth(y) * y - self.period * self.tooth(y) * (self.tooth(y) + 1.0) / 2.0);
-        let place = |tooth: f64, gap: f64, climb: f64| Branch {
+        let place = |tooth: f64, gap: f64, climb: f64| TouchBranch {
             gap,
             height,
             climb,
@@ -143,7 +143,7 @@ impl SawTooth {
         let [below, above] = [y - tooth * self.period, (tooth + 1.0) * self.period - y];
         let climb = 0.02 * tooth;
         let radius = 460.0;
-        sides[0] = vec![Branch { gap: 0.0, height: 0.0, climb: 0.0, radius, growth: 0.0 }];
+        sides[0] = vec![TouchBranch { gap: 0.0, height: 0.0, climb: 0.0, radius, growth: 0.0 }];
         sides[1] = vec![place(tooth, 0.0, climb)];
         let near = [(tooth + 1.0, 0.02 * above, climb + 0.02), (tooth - 1.0, 0.02 * below, climb - 0.02)];
         sides[1].extend(
@@ -157,11 +157,11 @@ impl SawTooth {
 fn the_conicity_of_a_saw_tooth_is_that_of_its_energy() -> Result<()> {
     for (period, depth) in [(0.7, 0.02), (0.0317, 2e-3), (0.3, 0.1)] {
         let saw = SawTooth { rise: 0.4, period, depth };
-        let search = |y: f64, sides: &mut Sides| {
+        let search = |y: f64, sides: &mut SideBranches| {
             saw.places(y, sides);
             Ok(true)
         };
-        let conicity = Conicity::refined(Table::new(search, 5.0, ACCURACY)?, &mut |_, _| {})?;
+        let conicity = Conicity::refined(RefinedTable::new(search, 5.0, ACCURACY)?, &mut |_, _| {})?;
         for amplitude in [0.02, 0.35, 1.0, 2.11, 3.0, 4.9999, 5.0] {
             let expected = conicity_of(quadrature(|y| saw.energy(y), amplitude, 1_000_000));
             let found = conicity.at(amplitude);
@@ -184,13 +184,13 @@ fn the_conicity_of_a_saw_tooth_is_that_of_its_energy() -> Result<()> {
 fn more_hops_than_searches_give_a_flagged_result() -> Result<()> {
     for (period, depth) in [(5e-4, 1e-4), (1.3e-3, 4e-4)] {
         let saw = SawTooth { rise: 0.4, period, depth };
-        let search = |y: f64, sides: &mut Sides| {
+        let search = |y: f64, sides: &mut SideBranches| {
             saw.places(y, sides);
             // Only the touching one is seen: hops have to be found by halving.
             sides[1].truncate(1);
             Ok(true)
         };
-        let conicity = Conicity::refined(Table::new(search, 5.0, ACCURACY)?, &mut |_, _| {})?;
+        let conicity = Conicity::refined(RefinedTable::new(search, 5.0, ACCURACY)?, &mut |_, _| {})?;
         assert_eq!(conicity.searches(), Conicity::most_searches(5.0));
         for amplitude in [0.35, 1.0, 2.11, 3.0, 4.9] {
             let expected = conicity_of(quadrature(|y| saw.energy(y), amplitude, 1_000_000));
