@@ -22,7 +22,7 @@ pub enum ErrorKind {
 
 /// An error in four parts: where, what was found, what was expected, and what to do.
 ///
-/// The command line ends with exit code 2 on every error. A geometric "no" (an infeasible contact, an empty patch) is a
+/// The command line ends with exit code 2 on every error. An infeasible contact or an empty patch is a
 /// result, not an error. Two errors are equal if their kinds and their texts are equal.
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{place}: found {found}; expected {expected}; {advice}")]

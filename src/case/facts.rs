@@ -15,7 +15,7 @@ pub struct Fact {
     said: Said,
 }
 
-/// How a fact is said.
+/// How a fact is written: as a number with its keys, or as text.
 enum Said {
     Number(FactNumber),
     /// A number that is not shown where it is 0.

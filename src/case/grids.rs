@@ -38,7 +38,7 @@ impl Grid {
 /// their own.
 ///
 /// # Errors
-/// Automatic axes without a patch; a patch of more parts than anybody looks through; cells that do not fit into memory.
+/// Automatic axes without a patch; a patch of more parts than are listed; cells that do not fit into memory.
 pub(super) fn grids(asked: &AskedAxes, contact: &PlacedContact) -> Result<Vec<Grid>> {
     let AskedAxes { xi, eta, spacing, merge, reference } = asked;
     let rail = || RailArcLength::new(&contact.placement);

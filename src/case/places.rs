@@ -19,10 +19,10 @@ use crate::search::{NoConicity, ONE_CONTACT, Position, Roll, Selection, SweepRow
 /// what most loads close, and what none does that steel bears.
 const SEARCHED_GAPS: [f64; 2] = [1.0, 10.0];
 
-/// What a wheel sinks by for an approach of 1 along the normal of a flange of 75°; flanges are not steeper.
+/// Vertical displacement of a wheel for an approach of 1 along the normal of a flange of 75°; flanges are not steeper.
 const STEEPEST: f64 = 4.0;
 
-/// Contacts of one wheel, and parts of one patch, beyond which nobody looks through their folders: the profiles are rough.
+/// Largest number of contacts of one wheel, and of parts of one patch. More are due to rough profiles, and each would have a folder.
 pub(super) const MOST_PARTS: usize = 100;
 
 /// A side of the track, or a single wheel, at first touch.
@@ -39,7 +39,7 @@ struct TouchedSide {
 /// those that tell contacts apart.
 ///
 /// # Errors
-/// No contact, or more than anybody looks through; a load that no approach carries.
+/// No contact, or more than are listed; a load that no approach carries.
 pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
     // A chosen contact is one whatever the approach.
     let chosen = matches!(case.standing.place, Place::Points { .. });
@@ -65,7 +65,7 @@ pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Re
 /// Finds all contacts of a case under an approach or load, the first one first, with what each carries.
 ///
 /// # Errors
-/// No contact, or more than anybody looks through; a load that no approach carries.
+/// No contact, or more than are listed; a load that no approach carries.
 pub fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
     let modulus = case.question.modulus();
     let Place::Points { rail_x, wheel_x } = &case.standing.place else { return search(case, approach) };
@@ -278,7 +278,7 @@ fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<TouchedSide>
 /// The regions of every side, or the side that does not carry its load; `None` of an axle and of a single wheel.
 type Carried = std::result::Result<Vec<Vec<ContactRegion>>, Option<TrackSide>>;
 
-/// Finds the regions of every side under an approach; each wheel sinks by at most `most` \[mm\] under a load.
+/// Finds the regions of every side under an approach; under a load a wheel is lowered by at most `most` \[mm\].
 fn regions(case: &Case, sides: &[TouchedSide], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
     let rules = rules(case, false);
     let wheel = |side: &TouchedSide| {

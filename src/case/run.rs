@@ -104,7 +104,7 @@ impl Run {
         points.sum::<usize>() as f64 * self.case.outputs.bytes_a_point()
     }
 
-    /// Lists the geometric "no"s, each with the name of its contact if there are several.
+    /// Lists why contacts are infeasible or patches empty, each with the name of its contact if there are several.
     pub fn refusals(&self) -> Vec<String> {
         let named = |part: &Part| {
             let name = if self.parts.len() > 1 { format!("{}: ", part.site.name()) } else { String::new() };
@@ -172,7 +172,7 @@ impl Part {
         self.site.contact.ellipse.filter(|_| unsolved).map(|ellipse| ellipse.pressure_n_per_mm2)
     }
 
-    /// Lists the geometric "no"s of the part.
+    /// Lists why the contact of the part is infeasible or its patch empty.
     pub fn refusals(&self) -> Vec<String> {
         self.site.refusals(self.analysis.patch.as_ref())
     }

@@ -25,7 +25,7 @@ pub struct Site {
 /// Finds the sites of a case, the first contact's first; a patch of several parts has a site for each.
 ///
 /// # Errors
-/// No contact; axes that cannot be sized; more contacts or parts than anybody looks through.
+/// No contact; axes that cannot be sized; more contacts or parts than are listed.
 pub fn sites(case: &Case) -> Result<Vec<Site>> {
     let contacts = find(case, case.question.approach)?;
     let grids = contacts.iter().map(|contact| grids(&case.axes, contact)).collect::<Result<Vec<_>>>()?;
@@ -102,7 +102,7 @@ impl Site {
         first && !self.contact.feasibility.feasible
     }
 
-    /// Lists the geometric "no"s of the contact and of its patch in the window.
+    /// Lists why the contact is infeasible or its patch in the window empty.
     pub fn refusals(&self, patch: Option<&Patch>) -> Vec<String> {
         let mut out = Vec::new();
         let feasibility = &self.contact.feasibility;

@@ -50,7 +50,7 @@ impl<'a> Unrolled<'a> {
     }
 }
 
-/// Lists the geometric "no"s: those of the contact, and that of its conformal patch in the place of the plane's.
+/// Lists why the contact is infeasible, and whether its conformal patch is empty.
 fn refusals(part: &Part, conformal: &Conformal) -> Vec<String> {
     let Some(patch) = &conformal.patch else { return part.refusals() };
     let mut out = part.site.refusals(None);

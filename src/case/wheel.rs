@@ -144,7 +144,7 @@ impl ContactRegion {
         self.extents.first().is_some_and(|extent| extent.contains(xi, eta))
     }
 
-    /// Gives what the wheel sinks by \[mm\], of the region that touches first.
+    /// Gives the vertical displacement of the wheel \[mm\], + down, from the region that touches first.
     pub(super) fn sunk(&self) -> f64 {
         self.approach / self.placement.upright()
     }
@@ -288,7 +288,7 @@ impl<'a> SinkingWheel<'a> {
         Ok(regions)
     }
 
-    /// Gives about what the wheel sinks by under a load \[N\]: after the first place's ellipse.
+    /// Estimates the vertical displacement of the wheel \[mm\] under a load \[N\] from Hertz's ellipse at the first place.
     fn guess(&mut self, load: f64, modulus: f64) -> Result<f64> {
         let ellipse = curvatures(&*self.placement(0)?).under_load(load, modulus);
         Ok(ellipse.map_or(USUAL_APPROACH, |ellipse| ellipse.approach_mm) / self.places[0].cos)

@@ -95,7 +95,7 @@ impl<'a> RayBodies<'a> {
         [self.steps.iter().any(|step| step.meets(over)), !inside]
     }
 
-    /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew all η have the same ray but for η.
+    /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew, η changes only the starting point.
     pub fn ray(&'a self, from: &RailPoint, eta: f64) -> Ray<'a> {
         let (sin, cos) = (self.skew_sin, self.skew_cos);
         let skewed = sin != 0.0;

@@ -75,7 +75,7 @@ pub struct Fleet {
     listed: Listed,
 }
 
-/// What became of a fleet.
+/// Counts of a fleet that was computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FleetOutcome {
     /// Number of pairs: wheelsets on sections.

@@ -24,9 +24,9 @@ pub struct Feasibility {
     /// Least separation where the bodies lie over each other \[mm\], negative where they overlap: the least s along ζ. Where s
     /// does not say what the bodies do, it is the least vertical gap between them; see [`feasibility`].
     pub least_separation_mm: f64,
-    /// ξ where it is \[mm\].
+    /// ξ of the least separation \[mm\].
     pub at_xi_mm: f64,
-    /// η where it is \[mm\]: 0 without skew.
+    /// η of the least separation \[mm\]: 0 without skew.
     pub at_eta_mm: f64,
 }
 

@@ -57,7 +57,7 @@ pub struct Creepages {
     pub spin: f64,
     /// Angular velocity of the wheel about ξ and η, over V \[rad/mm\]: about −1/r and 0 for a wheel that only rolls.
     pub turn: [f64; 2],
-    /// The rolling speed V \[mm/s\], positive: the mean of the speeds along η with which the wheel is carried and turns.
+    /// The rolling speed V \[mm/s\], positive: mean of translational and circumferential speed along η.
     pub rolling_speed: f64,
     /// Whether the contact moves to +η.
     pub forward: bool,

@@ -9,7 +9,7 @@ use wheelrail::{Error, Result};
 pub enum Outcome {
     /// The command did what it was asked to do.
     Done,
-    /// A geometric "no".
+    /// An infeasible contact, an empty patch or a failed check.
     No,
 }
 
@@ -30,7 +30,7 @@ pub fn print_to_reader(text: &str) -> Result<bool> {
     }
 }
 
-/// Writes every geometric "no" to stderr. Returns [`Outcome::No`] if there is one.
+/// Writes to stderr why contacts are infeasible or patches empty. Returns [`Outcome::No`] if any is.
 pub fn outcome(noes: impl IntoIterator<Item = String>) -> Outcome {
     let said = noes.into_iter().map(|no| complain(&format!("no: {no}"))).count();
     if said == 0 { Outcome::Done } else { Outcome::No }

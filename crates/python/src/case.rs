@@ -147,7 +147,7 @@ impl Case {
         case::summaries(&run).or_raise()?.iter().map(|summary| to_python(py, summary)).collect()
     }
 
-    /// Return the geometric "no"s: infeasible contacts, empty patches.
+    /// Return why contacts are infeasible or patches empty, a line each.
     ///
     /// Raises InputError for a case that cannot be computed.
     fn refusals(&self, py: Python<'_>) -> PyResult<Vec<String>> {

@@ -388,7 +388,7 @@ impl Profile {
 
     /// Gives marks along the profile, at most `step` \[mm\] apart.
     fn marks(&self, step: f64) -> PyResult<Vec<Mark>> {
-        /// Points of a profile that anybody looks at.
+        /// Largest number of points of a profile.
         const MOST: f64 = 1e7;
         let least = 4.0 * self.profile.extent() / MOST;
         if step.is_nan() || step < least {

@@ -26,7 +26,7 @@ pub struct PicturedContact<'a> {
     pub header: &'a Header,
     /// Side and number of the contact, which distinguish the pictures of one run; empty for a single contact.
     pub name: &'a str,
-    /// The geometric "no"s, which the picture shows in red.
+    /// Why the contact is infeasible or its patch empty; the picture shows it in red.
     pub refusals: &'a [String],
     /// The rail's profile \[ξ, ζ\] \[mm\]; NaN points separate its pieces.
     pub rail: &'a [[f64; 2]],

@@ -210,7 +210,7 @@ class Run(_Value):
     parts: list[Path]
     """The folder of every part, the first one first: each has a summary.json."""
     refusals: list[str]
-    """The geometric "no"s: an infeasible contact, an empty patch."""
+    """Why contacts are infeasible or patches empty, a line each."""
     warnings: list[str]
     """What a user should know before using the files."""
 
