@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::iter::ParallelIterator;
 
-/// What kind of thing went wrong.
+/// The kind of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -14,7 +14,7 @@ pub enum ErrorKind {
     Geometry,
     /// A wheel stands where it touches nothing.
     NoContact,
-    /// A disk or a stream did not do what it was asked.
+    /// A file or a stream cannot be opened, read or written.
     Io,
     /// The input asks for more than the program computes or reads: points, cells, bytes.
     Limit,
@@ -44,7 +44,8 @@ pub struct Error {
 /// The result type of every function of this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Gathers what threads make. Of several errors it is the first in order, whatever thread comes upon one first.
+/// Collects the results of a parallel iterator in order. Of several errors it returns the first in order, whichever thread fails
+/// first.
 ///
 /// # Errors
 /// The first error among them.
@@ -109,7 +110,7 @@ impl Error {
         Self { place: place.into(), ..self }
     }
 
-    /// Returns this error with `outer` put before its place: the error as one level further out sees it.
+    /// Returns this error with `outer` put before its place, for example the file before the key.
     #[must_use]
     pub fn within(mut self, outer: impl std::fmt::Display) -> Self {
         self.place =

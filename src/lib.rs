@@ -2,8 +2,8 @@
 //!
 //! Rail = extruded profile, wheel = revolved profile. For a placed pair the crate gives the initial contact point
 //! and its feasibility, the separation s(ξ, η) with unit normals, the interpenetration boundary s = δ, solver meshes
-//! over it, and the files that contact solvers and people read. It is a preprocessor: no elasticity beyond the
-//! estimate that turns a load into an approach.
+//! over it, and the files that contact solvers and people read. It is a preprocessor: only Hertz's theory and
+//! half-spaces are elastic, to turn a load into an approach and pressures.
 //!
 //! ```text
 //! scene → profiles → placement → separation → patch → meshes → files
@@ -18,8 +18,8 @@
 //! | (4.2), (4.3) | a point seen from a frame | [`Station`] |
 //! | (4.4)–(4.8) | the transformed profile ζ(ξ) | [`profile::Section`] |
 //! | (4.9)–(4.12) | the contact frame of two points | [`placement`] |
-//! | MIDSEP, Sec. 5 | transformed parameters and Δζ on the midplane | [`separation::midplane_table`], [`separation::transformed_parameters`] |
-//! | INSEP, (6.1)–(6.12) | s(ξ, η) and unit normals | [`Evaluator`]; over grids [`separation::plan`](fn@separation::plan), [`separation::Plan`] |
+//! | MIDSEP, Sec. 5 | transformed parameters, midplane Δζ | [`separation::midplane_table`], [`separation::transformed_parameters`] |
+//! | INSEP, (6.1)–(6.12) | s(ξ, η), unit normals | [`Evaluator`]; grids [`separation::plan`](fn@separation::plan), [`separation::Plan`] |
 //! | (6.13)–(6.16) | the Report's own iteration | [`separation::Method::ReportNewton`] |
 //! | INTERPEN, (7.1)–(7.3) | the boundary s = δ | [`patch::Slicer`], [`Patch`] |
 //! | CONFORM | the gap along the turning normal | [`conformal`] |
@@ -131,13 +131,12 @@
 //!
 //! # What is guaranteed, and what is not
 //!
-//! Relative error of s below 1e-13 where a point lies over both bodies' contact segments (relative to what s is the sum of:
-//! gap, rise across, and under yaw climb along; of s itself where bodies do not overlap), absolute error below
-//! 2e-12 mm (× R_max/300 mm for radii beyond 300 mm) elsewhere, |Δη| ≤ (R/η) × that on the boundary: checked against
-//! 60-digit values on every test run, and against triangle meshes of another library by `wheelrail check`. Not
-//! guaranteed: anything elastic. The same bounds hold for the normal gap t of
-//! [`conformal`]. See [`docs::numerics`] and [`docs::conformal`] for the formulas and [`docs::errata`] for what differs from
-//! the Report.
+//! Where a point lies over both bodies' contact segments, the relative error of s is below 1e-13: relative to s itself, or, where
+//! the bodies overlap before any approach, to the terms of s (midplane gap, rise across, under yaw climb along). Elsewhere the
+//! absolute error is below 2e-12 mm (× R_max/300 mm for radii beyond 300 mm). On the boundary |Δη| ≤ (R/η) × the error of s.
+//! The same bounds hold for the normal gap t of [`conformal`]. Every test run checks them against 60-digit values, and
+//! `wheelrail check` compares with triangle meshes of another library. Not guaranteed: anything elastic. See
+//! [`docs::numerics`] and [`docs::conformal`] for the formulas and [`docs::errata`] for what differs from the Report.
 
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]

@@ -2,8 +2,8 @@
 //!
 //! Node sets are `PATCH`, with all nodes, `BOUNDARY`, and `BOUNDARY_1`, … of each component; element sets are `PATCH`, with all
 //! elements, and `COMPONENT_1`, …. The surface `CONTACT` is the side of all elements that faces the wheel. Elements are shells of
-//! three nodes (S3): they are changed to another kind in one place. Material, thickness and supports are the user's: a job includes
-//! this file and adds them.
+//! three nodes (S3); the `*ELEMENT` line of each component names their type. Material, thickness and supports are the user's: a job
+//! includes this file and adds them.
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,4 @@
-//! Writes `boundary.csv` and `interpen.csv`: a header line, then numbers in mm, in the shortest form that reads back as the
-//! same number.
+//! Writes tables as CSV: a header line, then numbers in the shortest form that reads back as the same number. Lengths are in mm.
 
 use super::model::{Loop, PatchRow};
 use crate::numerics::interval::Interval;
@@ -30,9 +29,9 @@ pub fn interpen_csv(rows: &[PatchRow]) -> String {
     text
 }
 
-/// Writes `interpen_sigma.csv`, the same table over the rail's surface, with the columns sigma, xi, eta_min, eta_max and cut: the
-/// interval of η with t ≤ δ cos α for each grid σ inside the conformal patch. Each row is \[σ, ξ, η_min, η_max\] \[mm\], with
-/// the ends that are the window's.
+/// Writes `interpen_sigma.csv`, INTERPEN's table over the rail's surface, with the columns sigma, xi, eta_min, eta_max and cut: an
+/// interval of η with t ≤ δ cos α for each grid σ inside the conformal patch. Each row is \[σ, ξ, η_min, η_max\] \[mm\], and
+/// whether the lower and the upper end are the window's; `cut` is 0 none, 1 the lower one, 2 the upper one, 3 both.
 pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
     let mut text = String::from("sigma,xi,eta_min,eta_max,cut\n");
     for ([sigma, xi, low, high], cut) in rows {
@@ -41,12 +40,12 @@ pub fn interpen_sigma_csv(rows: &[([f64; 4], [bool; 2])]) -> String {
     text
 }
 
-/// Writes `table.csv`: a row for each cell and each quantity that exists there, with the cell's number from 1, its ends, the codes of
+/// Writes `table.csv`: a row for each cell and each quantity that exists there, with the cell's number from 1, its ends, the code of
 /// how it begins, the quantity, its stated error over the whole table, and the coefficients of 1, t, … t⁸. A cell in which a wheel is
 /// off its rail has one row without a quantity.
 ///
-/// Over yaw a row has the yaws of the cell in place of its ends, and there is one for each power j of u. The ends are the first two
-/// quantities of each cell, `from_mm` and `to_mm` of the wheelset, with the same u from −1 to 1 over the yaws of the cell.
+/// Over yaw a row has the yaws of the cell in place of its ends, and each quantity has a row for each power j of u, which is −1 to 1
+/// over these yaws. The ends are the first two quantities of each cell, `from_mm` and `to_mm` of the wheelset.
 pub fn table_csv(table: &ContactTable) -> String {
     let about = table.about();
     let (ends, power) =

@@ -14,7 +14,7 @@ pub struct CurvedFields<'a> {
 impl<'a> CurvedFields<'a> {
     /// Makes the fields from arrays whose lengths must agree.
     ///
-    /// `sigma`: ascending arc lengths \[mm\]. `grid`: as over the tangent plane, at the ξ of the rail's points, with the
+    /// `sigma`: ascending arc lengths \[mm\]. `grid`: the fields at the ξ of the rail's points, with the
     /// normal gap t \[mm\] in the place of s. `wheel_normal`: the wheel's outward unit normal (ξ, η, ζ) at
     /// `i_sigma * n_eta + i_eta`, NaN where t is undefined.
     ///
@@ -41,13 +41,13 @@ impl<'a> CurvedFields<'a> {
         self.grid.rail_normal()[i]
     }
 
-    /// Returns α \[rad\] at σ number `i`, positive counter-clockwise from ξ to ζ.
+    /// Returns α \[rad\] at σ number `i`: the angle of the rail's normal from ζ, positive counter-clockwise from ξ to ζ.
     pub fn angle(&self, i: usize) -> f64 {
         let [n_xi, n_zeta] = self.normal(i);
         (-n_xi).atan2(n_zeta)
     }
 
-    /// Returns α \[rad\] at every σ.
+    /// Returns the angle α \[rad\] of the rail's normal from ζ at every σ, positive counter-clockwise.
     pub fn angles(&self) -> Vec<f64> {
         (0..self.sigma.len()).map(|i| self.angle(i)).collect()
     }

@@ -17,7 +17,7 @@ const EDGE: u8 = 1;
 /// Gmsh's number of a triangle of three nodes.
 const TRIANGLE: u8 = 2;
 
-/// A curve or surface of Gmsh with its own nodes and elements. All numbers but those of nodes are Gmsh's and begin with 1.
+/// A curve or surface of Gmsh with its own nodes and elements. Tags begin with 1, as Gmsh's do; indices of nodes begin with 0.
 struct Entity {
     dimension: u8,
     tag: usize,

@@ -1,4 +1,4 @@
-//! Files in the axes of the track: bodies, patches, boundaries and contact points where they are.
+//! Files in the axes of the track: bodies, patches, boundaries and contact points at their places.
 
 use nalgebra::Point3;
 use vtkio::model::{Attribute, Attributes, DataSet, PolyDataPiece};
@@ -14,7 +14,7 @@ use crate::mesh::BodyShell;
 pub struct ContactInPlace {
     /// Number of the contact in the run, from 1.
     pub number: usize,
-    /// C \[mm\].
+    /// The initial contact point C \[mm\].
     pub point: Point3<f64>,
     /// δ \[mm\]; NaN without one.
     pub approach: f64,
@@ -24,14 +24,14 @@ pub struct ContactInPlace {
     pub patch: QuadMesh,
     /// δ − s at every point of the patch \[mm\].
     pub overlap: Vec<f64>,
-    /// Its boundary.
+    /// The boundary of the patch.
     pub loops: Vec<Loop>,
 }
 
 /// All contacts of a run with both bodies of each side, in the axes of the track.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InPlace {
-    /// Lines that say what the files show, in which axes.
+    /// Lines that say what the files show and in which axes.
     pub statements: Vec<String>,
     /// The rails.
     pub rails: BodyShell,

@@ -1,8 +1,9 @@
-//! Writers: they take plain arrays and give bytes. Nothing here computes geometry or touches the disk.
+//! Writers: they take plain arrays and give bytes. Nothing here computes the geometry of bodies or touches the disk.
 //!
-//! Large files (grids) are written to any [`std::io::Write`] in one pass and in blocks, so that a grid is
-//! never held twice; small files are returned as bytes. Every file is in the contact frame of Report Sec. 4,
-//! in mm. [`Header::statements`] is the one place that describes frame, signs, order and mask in words.
+//! Large files (grids) are written to any [`std::io::Write`] in one pass and in blocks, without a second copy of the grid; only
+//! [`Deck`] holds its numbers as text, too. Small files are returned as bytes. Files of one contact are in the contact frame of
+//! Report Sec. 4, in mm, and [`Header::statements`] describes frame, signs, order and mask in words; files of [`InPlace`] are in the
+//! axes of the track.
 
 mod abaqus;
 mod block;

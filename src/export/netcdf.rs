@@ -1,10 +1,10 @@
-//! Writes `separation.nc` in NetCDF-3 classic. It is the one format that tells sizes, units and mask to SurfaceTopography
-//! and ContactMechanics.
+//! Writes `separation.nc` and `table.nc` in NetCDF-3 classic. It is the one format that tells sizes, units and mask to
+//! SurfaceTopography and ContactMechanics.
 //!
-//! Dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\] and, if a body has
-//! no surface somewhere, `mask(x, y)` (1 = undefined); `pressure(x, y)` \[N/mm²\] where it was solved. The sign of −s is
-//! right because those programs press a rigid flat down onto `heights`. Contact tables are written in the same format. The writer is our own: the format is small, and
-//! the crates for it write only to paths.
+//! `separation.nc`: dimensions x (= ξ) and y (= η); variables `x`, `y` \[mm\] (cell centres), `heights(x, y)` = −s \[mm\] and, if a
+//! body has no surface somewhere, `mask(x, y)` (1 = undefined); `pressure(x, y)` \[N/mm²\] where it was solved. The sign of −s is
+//! right because those programs press a rigid flat down onto `heights`. The writer is our own: the format is small, and the
+//! crates for it write only to paths.
 
 use super::block::{Block, put_f64_be};
 use super::model::{GridFields, Header};
@@ -49,7 +49,7 @@ impl<'a> NetCdf<'a> {
     /// Prepares the file.
     ///
     /// # Errors
-    /// A grid of unequal steps, or of one row or column, because the format has fields for sizes but not for places.
+    /// A grid of unequal steps, or of one row or column, because the readers take the size of the grid, not the places of its points.
     pub fn new(header: &Header, grid: &'a GridFields<'a>) -> Result<Self> {
         let steps = grid.steps("netcdf")?;
         let masked = grid.separation().iter().any(|s| s.is_nan());
@@ -212,7 +212,7 @@ const NAME: usize = 24;
 /// Dimensions cell, quantity, power, side (left, right), end and name. Variables `lateral(cell, end)` \[mm\], `begins(cell)`,
 /// `touches(cell)` and `lacks(cell, side)` with the codes of the text table; `quantity_name(quantity, name)`,
 /// `quantity_side(quantity, name)`, `needs(quantity)`, `tolerance(quantity)` and `error(quantity)` in each quantity's unit;
-/// `coefficients(cell, quantity, power)` of 1, t, … t⁸, not numbers where a quantity does not exist.
+/// `coefficients(cell, quantity, power)` of 1, t, … t⁸, NaN where a quantity does not exist.
 ///
 /// Over yaw there is also the dimension yaw_power: `lateral(cell, end, yaw_power)` and `coefficients(cell, quantity, yaw_power, power)`
 /// have the coefficients of u^j and u^j tᵏ, with u from −1 to 1 over the yaws of the cell, `yaw(cell, end)` \[rad\].
@@ -308,7 +308,7 @@ fn put_doubles(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = f64>) {
     numbers.for_each(|number| bytes.extend(number.to_be_bytes()));
 }
 
-/// Appends bytes, filled up to four.
+/// Appends bytes, with zeros up to a multiple of four.
 fn put_codes(bytes: &mut Vec<u8>, codes: impl Iterator<Item = u8>) {
     bytes.extend(codes);
     bytes.resize(bytes.len().next_multiple_of(4), 0);

@@ -35,7 +35,7 @@ pub fn array_npy(sink: &mut dyn Write, shape: &[u64], values: &[f64]) -> io::Res
 /// Length of the header's beginning: magic, version, and the length of the rest as two bytes, little-endian.
 const PREFIX: usize = 10;
 
-/// NumPy aligns the data at multiples of this, with blanks before the line break that ends the header.
+/// Multiple \[bytes\] at which NumPy begins the data; blanks before the line break that ends the header fill up to it.
 const ALIGNMENT: usize = 64;
 
 /// Returns the header of an array of at most a thousand dimensions: its length fits into two bytes.

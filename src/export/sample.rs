@@ -1,4 +1,4 @@
-//! Sample data for the writers' tests: a paraboloid, with a corner where no body is.
+//! Sample data for the writers' tests: a paraboloid, undefined at one corner.
 
 use nalgebra::{Isometry2, Point3, Translation2, UnitComplex, Vector3};
 
@@ -51,7 +51,7 @@ pub(super) fn mesh() -> QuadMesh {
     QuadMesh { points, quads, area: vec![1.0; 4], component: vec![0, 0, 1, 1] }
 }
 
-/// Returns the same square in eight triangles around nine nodes, with 7 mm² as its area.
+/// Returns the square |ξ|, |η| ≤ 1 as eight triangles with nine nodes, with 7 mm² as its area.
 pub(super) fn patch_mesh() -> PatchMesh {
     let QuadMesh { points, quads, .. } = mesh();
     let triangles: Vec<[usize; 3]> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();

@@ -107,8 +107,8 @@ pub fn surface_vtu(header: &Header, mesh: &SurfaceMesh) -> Result<Vec<u8>> {
     xml(header, &[], unstructured(&mesh.points, &mesh.triangles, data), EMPTY_UNSTRUCTURED)
 }
 
-/// Writes a triangulated surface as polygons (`.vtp`), which viewers in browsers open, with the same arrays as
-/// [`surface_vtu`].
+/// Writes a triangulated surface as polygons (`.vtp`), which viewers in browsers open, with the point arrays separation \[mm\] and
+/// normal.
 ///
 /// # Errors
 /// A mesh that contradicts itself.
@@ -129,7 +129,7 @@ fn surface_data(mesh: &SurfaceMesh) -> Result<Attributes> {
     Ok(Attributes { point: vec![separation, vectors("normal", &mesh.normals)], cell: Vec::new() })
 }
 
-/// Writes `surface.pvd`: the files of a sweep on one time axis, which ParaView plays. `steps` are (time, part, path), with
+/// Writes a `.pvd` collection: the files of a sweep on one time axis, which ParaView plays. `steps` are (time, part, path), with
 /// the paths as they are to be written.
 pub fn collection_pvd(steps: &[(f64, usize, String)]) -> String {
     let set = |(time, part, path): &(f64, usize, String)| {
@@ -161,7 +161,7 @@ pub(super) fn numbered<C: AsRef<[usize]>>(cells: &[C]) -> VertexNumbers {
     VertexNumbers::XML { connectivity, offsets }
 }
 
-/// Returns loops as closed lines, of points that stand one loop after another.
+/// Returns the node numbers of loops as closed lines; the points of the loops follow one another.
 pub(super) fn closed(loops: &[&Loop]) -> VertexNumbers {
     let mut first = 0;
     let line = |ring: &&Loop| -> Vec<usize> {
@@ -193,7 +193,7 @@ pub(super) fn scalars(name: &str, data: IOBuffer, expected: usize) -> Result<Att
     Ok(Attribute::DataArray(DataArray { name: name.into(), elem, data }))
 }
 
-/// Returns an array of vectors of points.
+/// Returns an array with one vector for each point.
 fn vectors(name: &str, vectors: &[Vector3<f64>]) -> Attribute {
     let data = vectors.iter().flat_map(|vector| vector.as_slice()).copied().collect::<Vec<f64>>().into();
     Attribute::DataArray(DataArray { name: name.into(), elem: ElementType::Vectors, data })

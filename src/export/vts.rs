@@ -72,7 +72,8 @@ pub fn separation_vts(sink: &mut dyn Write, header: &Header, grid: &GridFields) 
 
 /// Writes `conformal.vts`: the rail's surface over σ and η with normal_gap t \[mm\], angle α \[rad\], sigma \[mm\],
 /// interpenetration max(δ cos α − t, 0) \[mm\], gap_vector t·n_R \[mm\] (Warp By Vector moves the rail onto the wheel by it),
-/// the outward unit normals of both bodies, and mask (1 where t is defined). Undefined values are NaN; in vectors they are 0.
+/// the outward unit normals of both bodies, and mask (1 where t is defined). Undefined values are NaN; in gap_vector and
+/// wheel_normal they are 0.
 ///
 /// # Errors
 /// The errors of the sink.
@@ -162,7 +163,7 @@ fn structured_grid(
     block.finish()
 }
 
-/// Returns everything up to the first appended byte; `arrays[0]` are the points, `scalars` names the array that is coloured by.
+/// Returns everything up to the first appended byte. `arrays[0]` are the points; `scalars` names the array that gives the colours.
 fn head(header: &Header, grid: &GridFields, scalars: &str, arrays: &[&Array]) -> String {
     let extent = format!("0 {} 0 {} 0 0", grid.eta().len() - 1, grid.xi().len() - 1);
     let mut offset = 0;

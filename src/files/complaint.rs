@@ -10,7 +10,7 @@ pub(super) fn bad(path: &Path, found: &str, expected: &str, advice: &str) -> Err
     Error::new(path.display().to_string(), found, expected, advice).of_kind(ErrorKind::Io)
 }
 
-/// Makes the complaint about a folder, or a file in it, that the disk refuses to write.
+/// Makes the error about a folder, or a file in it, that the disk refuses to write.
 pub(super) fn unwritable(path: &Path, error: io::Error) -> Error {
     let advice = "check its permissions or give another folder";
     bad(path, &error.to_string(), "a folder that can be written", advice).caused_by(error)

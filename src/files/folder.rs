@@ -13,7 +13,7 @@
 //!   removes it at once: [`discard_all`](temporary::discard_all).
 //! - **No fsync.** Twenty of them cost more than the whole run. The promise holds for a kill of the process,
 //!   not for a power cut: the END lines and the sizes in the headers show that a folder is incomplete.
-//! - **Foreign files.** A folder is replaced only if it is empty or contains our own summary. What is in it and
+//! - **Foreign files.** A folder is replaced only if it is empty or contains our own marker. What is in it and
 //!   is not ours (a solver's output, notes, pictures, whole subfolders) gets a second name in the new folder
 //!   before the step, at the same path, by hard links: at every moment it is in DIR, whole, and a program that
 //!   is writing to it goes on. What came into the old folder during the step is linked after it.
@@ -27,7 +27,7 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// Name of the old folder while two folders are swapped on a file system without the exchange of names.
+/// Beginning of the old folder's name while two folders are swapped on a file system without the exchange of names.
 const ASIDE: &str = ".wheelrail-old.";
 
 /// Most attempts to put the new folder in place. An attempt fails only if another run does the same at that moment.

@@ -43,7 +43,7 @@ pub(super) fn open_folder(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// Opens a folder; Windows does not lock folders, so that no process takes it for stale.
+/// Opens a folder. Windows does not lock folders: no process takes one for stale there.
 #[cfg(windows)]
 pub(super) fn open_folder(path: &Path) -> io::Result<File> {
     use std::os::windows::fs::OpenOptionsExt;

@@ -27,13 +27,13 @@ static NUMBER: AtomicU64 = AtomicU64::new(0);
 /// The temporary names of this process.
 static IN_USE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Read while a temporary name is made, removed or put in place; written, for ever, by [`discard_all`].
+/// Locked for reading while a temporary name is made, removed or put in place. [`discard_all`] locks it for writing and never unlocks it.
 static UNINTERRUPTED: RwLock<()> = RwLock::new(());
 
 /// Most attempts to remove a folder into which other threads write.
 const REMOVALS_TRIED: u32 = 100;
 
-/// Keeps [`discard_all`] waiting until the guard is dropped; does not return after it. A thread must hold one guard at a time.
+/// Keeps [`discard_all`] waiting until the guard is dropped; never returns once that runs. A thread must hold at most one guard.
 pub(super) fn uninterrupted() -> RwLockReadGuard<'static, ()> {
     UNINTERRUPTED.read().unwrap_or_else(PoisonError::into_inner)
 }
@@ -41,7 +41,7 @@ pub(super) fn uninterrupted() -> RwLockReadGuard<'static, ()> {
 /// Removes every temporary folder and file of this process. It waits for those that are being put in place; afterwards none is
 /// made or put in place: threads that try wait for ever. For a program that a signal ends.
 pub fn discard_all() {
-    // Forgotten, so that it is never released.
+    // The guard is forgotten, so that the lock is never released.
     std::mem::forget(UNINTERRUPTED.write().unwrap_or_else(PoisonError::into_inner));
     for path in IN_USE.lock().unwrap_or_else(PoisonError::into_inner).iter() {
         // Under another name no thread makes a new file in it. A file that was made just before refuses the removal.

@@ -1,9 +1,9 @@
-//! The approach δ that a load causes: the root of a load that grows with it.
+//! Finds the approach δ under a load: the root of a load that grows with δ.
 
-/// How a load grows with the approach where it is looked for: as δ^3/2, after Hertz.
+/// First estimate of d ln N/d ln δ: the load of an ellipse grows with δ^3/2 (Hertz). Secant slopes stay within 0.5 to 4 times this.
 const USUAL_SLOPE: f64 = 1.5;
 
-/// Least approach that is looked for \[mm\].
+/// Lower end of the search \[mm\].
 const LEAST: f64 = 1e-9;
 
 /// Finds the approach \[mm\] up to `most` at which `total`, a load that grows with it from 0, is `load`; `None` if none is.
@@ -55,7 +55,7 @@ mod tests {
             assert!(miss.is_some_and(|miss| miss.abs() < 1e-5), "{load}: {found:?} {miss:?}");
         }
         assert_eq!(under_total(|u| u, 11.0, 0.05, 10.0, 1e-6), None);
-        // A load that jumps over the one that is asked for: the jump.
+        // A load that jumps over the one that is asked for gives the approach of the jump.
         let jump = under_total(|u| if u < 0.2 { u } else { 2.0 + u }, 1.0, 0.05, 10.0, 1e-6);
         assert!(jump.is_some_and(|u| (u - 0.2).abs() < 1e-5), "{jump:?}");
     }

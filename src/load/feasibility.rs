@@ -13,7 +13,8 @@ use crate::separation::{Evaluator, midplane_gap};
 /// profile and of its drawing's tangents (1e-10 mm on a wheel), far below what any solver resolves.
 const ROUNDING: f64 = 1e-12;
 
-/// The same on a rail that varies: the search follows its places to 1e-9 of a cell, and the frame's normal with them.
+/// Overlap, as a share of the profiles' extent, up to which a contact of a body that varies counts as feasible: the search finds its
+/// places to 1e-9 of a cell, and with them the frame's normal.
 const ROUNDING_OF_PLACES: f64 = 1e-11;
 
 /// The answer to (4.1).
@@ -21,8 +22,8 @@ const ROUNDING_OF_PLACES: f64 = 1e-11;
 pub struct Feasibility {
     /// Whether the bodies nowhere overlap in this position.
     pub feasible: bool,
-    /// Least separation where the bodies lie over each other \[mm\], negative where they overlap: the least s along ζ. Where s
-    /// does not say what the bodies do, it is the least vertical gap between them; see [`feasibility`].
+    /// Least separation where the bodies lie over each other \[mm\], negative where they overlap: the least s along ζ, or the least
+    /// vertical gap where the two differ in sign; see [`feasibility`].
     pub least_separation_mm: f64,
     /// ξ of the least separation \[mm\].
     pub at_xi_mm: f64,
@@ -30,24 +31,23 @@ pub struct Feasibility {
     pub at_eta_mm: f64,
 }
 
-/// The least separation of a placed pair and where it is; `None` where the bodies nowhere lie over each other.
+/// Finds the least separation of a placed pair and its place; `None` where the bodies nowhere lie over each other.
 ///
 /// Without skew it is exact to rounding: over every interval in which neither body changes its branch the minimum is at an
 /// end or where the two are parallel. The midplane suffices: at fixed ξ the wheel only rises with |η|, since its
 /// profile angle is below 90°.
 ///
-/// The bodies decide, not their sheets: along a steep ζ, s compares only the sheets that face each other at C. Without skew
-/// the vertical gap in the rail profile's axes says whether the bodies overlap, as each body has one outer height there. Where
-/// s is negative and the vertical gap is not, or the other way round, the result is the least vertical gap with its place.
+/// Along a steep ζ, s compares only the sheets that face each other at C. So without skew the vertical gap in the rail profile's axes,
+/// where each body has one outer height, decides whether the bodies overlap. Where s is negative and the vertical gap is not, or the
+/// other way round, the result is the least vertical gap with its place.
 ///
-/// Under a skewed wheel s alone decides. The least s of every line of constant ξ is where the wheel is parallel to η, or on the circle of a
-/// kink or end: places in closed form. Along them s is searched between joints for where it turns, up to |η| = 0.65 of the
-/// axle's distance. Exact to rounding, but for two turns within a quarter of a stretch between joints: see the docs on
-/// numerics.
+/// Under a skewed wheel s alone decides. On a rail the least s of every line of constant ξ is where the wheel is parallel to η, or on the
+/// circle of a kink or end: places in closed form. Along them s is searched between joints for its turning points, up to |η| = 0.65 of
+/// the axle's distance. Exact to rounding, unless s turns twice within a quarter of a stretch between joints: see the docs on numerics.
 ///
-/// On a rail that varies along the track s is searched as the patch is: [`Patch::new`].
+/// Where a body varies, s is searched as the patch is: [`Patch::new`].
 ///
-/// Cost: some ten nanoseconds a joint without skew, some hundred with it.
+/// Cost: some ten nanoseconds a joint without skew, some hundred with skew.
 ///
 /// # Examples
 /// ```
@@ -73,7 +73,7 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     };
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     let apart = |gap: f64| gap >= -ROUNDING * extent;
-    // What a steep surface is off by along its normal is more along the vertical.
+    // An error along the normal of a steep surface is larger along the vertical.
     let steep = placement.rail().point().station.cos;
     let vertical = least_vertical_gap(placement);
     let feasible = vertical.map_or(apart(along_zeta.0), |(gap, ..)| apart(gap * steep));
@@ -82,11 +82,11 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }
 
-/// The least s where a body varies: at C, or where the bodies overlap most.
+/// Finds the least s where a body varies: at C, or where the bodies overlap most.
 fn with_varying(placement: &Placement) -> Option<Feasibility> {
     let at_contact = Evaluator::new(placement).separation(0.0, 0.0);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    // Below 0 by what counts as rounding, which would otherwise make patches of its own around C.
+    // Below 0 by rounding, which would otherwise make patches of its own around C.
     let overlap = Patch::new(placement, -ROUNDING_OF_PLACES * extent, &Window::UNBOUNDED);
     let places = overlap.components.iter().map(|component| component.deepest);
     let own = std::iter::once([at_contact, 0.0, 0.0]).filter(|[s, ..]| !s.is_nan());
@@ -95,7 +95,7 @@ fn with_varying(placement: &Placement) -> Option<Feasibility> {
     Some(Feasibility { feasible, least_separation_mm: least, at_xi_mm: xi, at_eta_mm: eta })
 }
 
-/// (gap, ξ, η) \[mm\] of the least vertical gap in the midplane, the place on the rail; `None` under skew.
+/// Finds (gap, ξ, η) \[mm\] of the least vertical gap in the midplane, at its place on the rail; `None` under skew.
 fn least_vertical_gap(placement: &Placement) -> Option<(f64, f64, f64)> {
     if placement.skew() != 0.0 {
         return None;
@@ -107,7 +107,7 @@ fn least_vertical_gap(placement: &Placement) -> Option<(f64, f64, f64)> {
     Some((gap, xi, 0.0))
 }
 
-/// (s, ξ, η) \[mm\] of the least s in the midplane.
+/// Finds (s, ξ, η) \[mm\] of the least s in the midplane.
 fn least_in_midplane(placement: &Placement) -> Option<(f64, f64, f64)> {
     let over = placement.overlap()?;
     // C itself first: rounding may put a stationary point next to it.
@@ -121,7 +121,7 @@ fn least_in_midplane(placement: &Placement) -> Option<(f64, f64, f64)> {
     least
 }
 
-/// (s, ξ, η) \[mm\] of the least s over all valleys of a skewed wheel.
+/// Finds (s, ξ, η) \[mm\] of the least s over all valleys of a skewed wheel.
 fn least_under_skew(placement: &Placement) -> Option<(f64, f64, f64)> {
     let (valleys, mut evaluator) = (Valleys::new(placement), Evaluator::new(placement));
     let reach = placement.rail().section.reach()?;

@@ -1,4 +1,4 @@
-//! From a load to approaches δ and back, and whether a chosen contact can stand at all.
+//! The approach δ under a load, the load under an approach, and whether a chosen contact is feasible.
 
 mod approach;
 mod feasibility;

@@ -7,7 +7,7 @@ use crate::patch::Window;
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
-/// Columns and rows of the midpoint rule: the centre of an ellipse is right to 1e-4 of its size.
+/// Number of columns and rows of the midpoint rule: the centre of an ellipse is right to 1e-4 of its size.
 const CELLS: [usize; 2] = [64, 32];
 
 /// The centre of an overlap, on the rail.

@@ -1,7 +1,7 @@
 //! Wheels that vary around their axle: sections at angles, a radius that varies, a flat.
 //!
 //! The surface is that of a rail's slices, over the developed circumference: the place of a section is R times its angle, and z points
-//! away from the axle. It goes once around and as much further as a wheel is looked at, so that a search meets no seam.
+//! away from the axle. It goes beyond one turn as far as searches reach, so that they meet no seam.
 
 use std::cmp::Ordering::Less;
 use std::f64::consts::PI;
@@ -20,17 +20,18 @@ use crate::profile::Profile;
 /// How far a wheel's surface goes around from its middle, to both sides \[rad\].
 const FAR: f64 = 1.5 * PI;
 
-/// Sections beyond that, on which monotone cubics between the others depend.
+/// Number of sections beyond [`FAR`] on which the monotone cubics within it depend.
 const MARGIN: usize = 3;
 
-/// Least angle \[rad\] between two sections of a wheel; sections closer to a whole turn apart are one. CONTACT has it, too.
+/// Least angle \[rad\] between two rows of a radius that varies. A last section that is a whole turn from the first one, within this
+/// angle, is the first one, as in CONTACT.
 const LEAST_APART: f64 = 1e-3;
 
-/// Rows by which a spline is continued beyond the surface to stand for a periodic one. The effect of its ends falls to a quarter
+/// Number of rows by which a spline is continued beyond the surface to stand for a periodic one. The effect of its ends falls to a quarter
 /// from row to row, or to a half where rows are far from equally spaced: to 2⁻⁵⁴ over these.
 const SPLINE_MARGIN: usize = 54;
 
-/// Largest cell \[rad\] of a flat: cubics beside its closed form are off by 1e-6 mm on a radius of 500 mm.
+/// Largest cell \[rad\] of a flat: cubics that approximate its closed form are off by 1e-6 mm on a radius of 500 mm.
 const OF_FLAT: f64 = 2e-2;
 
 /// Number of cells along a rounded edge of a flat.
@@ -39,11 +40,11 @@ const OF_EDGE: usize = 6;
 /// A wheel that varies around its axle.
 #[derive(Debug, Clone)]
 pub struct LoftedWheel {
-    /// Its developed surface, z upside down.
+    /// Its developed surface, upside down: z points away from the axle.
     pub(crate) loft: Arc<Loft>,
     /// Nominal rolling radius \[mm\].
     pub(crate) radius: f64,
-    /// Angle \[rad\] around which the surface goes once about the axle.
+    /// Angle \[rad\] at the middle of the surface, which reaches [`FAR`] to both sides.
     pub(crate) middle: f64,
     warnings: Vec<String>,
 }
@@ -53,15 +54,15 @@ pub struct LoftedWheel {
 pub struct Flat {
     /// Length L of the chord \[mm\]; the flat is R − √(R² − L²/4) deep.
     pub length: f64,
-    /// Where its middle lies around the wheel \[rad\].
+    /// Angle of its middle around the wheel \[rad\].
     pub angle: f64,
     /// Radius of its edges \[mm\], tangential to the chord and to the circle; 0 for a fresh flat, whose edges are sharp.
     pub edge_radius: f64,
 }
 
 impl LoftedWheel {
-    /// Joins sections at ascending angles \[rad\], `at`, of a wheel of this nominal rolling radius \[mm\]. A wheel is periodic: the last
-    /// section is joined to the first.
+    /// Joins the sections of a wheel of this nominal rolling radius \[mm\]; [`LoftSlice::at`] is their angle \[rad\], ascending. A wheel is
+    /// periodic: the last section is joined to the first.
     ///
     /// # Errors
     /// The errors of [`Loft::new`]; angles that do not ascend; a radius that is not positive; a section that reaches the axle; sections
@@ -104,8 +105,8 @@ impl LoftedWheel {
     /// \[rad\], less than a turn, joined all around by a periodic cubic spline.
     ///
     /// # Errors
-    /// Fewer than two deviations, or some out of order, more than once around, not finite, or as large as the radius; a radius that is not
-    /// positive; a profile that reaches the axle.
+    /// Fewer than two deviations, or some out of order, closer than 1 mrad, more than once around, not finite, or as large as the radius;
+    /// a radius that is not positive; a profile that reaches the axle.
     pub fn out_of_round(profile: &Profile, radius: f64, deviations: &[[f64; 2]]) -> Result<Self> {
         check_radius(radius)?;
         let middle = check_rows(radius, deviations)?.middle();
@@ -117,7 +118,7 @@ impl LoftedWheel {
     ///
     /// # Errors
     /// A length below 0.01 mm, or the diameter and more; an angle beyond a turn; an edge radius that is negative, or as large as the
-    /// distance of the chord from the axle; a profile that reaches the axle.
+    /// distance of the chord from the axle; a radius that is not positive; a profile that reaches the axle.
     pub fn with_flat(profile: &Profile, radius: f64, flat: &Flat) -> Result<Self> {
         check_radius(radius)?;
         let middle = turned(flat.angle, 0.0);
@@ -134,7 +135,7 @@ impl LoftedWheel {
         Self::around(loft, radius, middle, Vec::new())
     }
 
-    /// Takes a surface if it stays clear of the axle.
+    /// Makes a wheel of a surface that stays clear of the axle.
     fn around(loft: Loft, radius: f64, middle: f64, warnings: Vec<String>) -> Result<Self> {
         let heights = loft.strips.iter().flat_map(LoftStrip::bays).map(|bay| bay.bounds(1)[1].low);
         let nearest = heights.fold(f64::INFINITY, f64::min);
@@ -146,15 +147,15 @@ impl LoftedWheel {
         Ok(Self { loft: Arc::new(loft), radius, middle, warnings })
     }
 
-    /// Takes what is doubtful in the list of its sections, too.
+    /// Adds warnings about the list of its sections.
     #[must_use]
     pub fn with_warnings(mut self, doubts: Vec<String>) -> Self {
         self.warnings.extend(doubts);
         self
     }
 
-    /// Returns the section that is lowest where the wheel is turned by a pitch \[rad\], + forward at the bottom; without one that where the
-    /// surface begins.
+    /// Returns the section that is lowest where the wheel is turned by a pitch \[rad\], + forward at the bottom; without a pitch, the
+    /// section where the surface begins.
     ///
     /// # Errors
     /// A place where the sections leave the surface undefined.
@@ -172,7 +173,7 @@ impl LoftedWheel {
         Ok(lowest)
     }
 
-    /// Where the sections leave the surface undefined, and why.
+    /// Gives the warnings about its sections: where they leave the surface undefined, and why; what is doubtful in their list.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -214,14 +215,14 @@ fn check_rows(radius: f64, deviations: &[[f64; 2]]) -> Result<Interval> {
     Ok(range)
 }
 
-/// Returns the angle that is equal to this one but for whole turns, within π of `middle` \[rad\].
+/// Adds whole turns to an angle, so that it lies within π of `middle` \[rad\].
 pub(crate) fn turned(angle: f64, middle: f64) -> f64 {
     let off = angle - middle;
     // An angle that needs no turn keeps its last digit.
     if off.abs() <= PI { angle } else { (off + PI).rem_euclid(2.0 * PI) - PI + middle }
 }
 
-/// The sections from [`FAR`] before `middle` to as much after it, and beyond that as many as their joining depends on.
+/// Lists the sections from [`FAR`] before `middle` to as much after it, and as many more on both sides as their joining depends on.
 fn periodic(own: &[LoftSlice], middle: f64, joining: Joining) -> Vec<LoftSlice> {
     let margin = match joining {
         Joining::Monotone => MARGIN,
@@ -236,7 +237,7 @@ fn periodic(own: &[LoftSlice], middle: f64, joining: Joining) -> Vec<LoftSlice> 
     all[first..last.min(all.len())].to_vec()
 }
 
-/// Whole turns \[rad\] that so many rows are repeated by, so that there are `margin` of them beyond [`FAR`].
+/// Lists the whole turns \[rad\] by which so many rows are repeated, so that `margin` of them lie beyond [`FAR`].
 fn turns(rows: usize, margin: usize) -> impl Iterator<Item = f64> {
     let turns = (2 + margin.div_ceil(rows)) as i32;
     (-turns..=turns).map(|turn| 2.0 * PI * f64::from(turn))
@@ -249,7 +250,7 @@ fn developed(sections: Vec<LoftSlice>, radius: f64) -> Vec<LoftSlice> {
     sections.into_iter().map(place).collect()
 }
 
-/// The periodic spline through deviations \[mm\] at angles \[rad\], over the developed circumference.
+/// Makes the periodic spline through deviations \[mm\] at angles \[rad\], over the developed circumference.
 fn periodic_spline(deviations: &[[f64; 2]], radius: f64, middle: f64) -> HeightStretch {
     let all = turns(deviations.len(), SPLINE_MARGIN)
         .flat_map(|turn| deviations.iter().map(move |[angle, value]| [radius * (angle + turn), *value]));
@@ -271,7 +272,7 @@ struct FlatShape {
     ends: [f64; 2],
 }
 
-/// Shortest flat \[mm\]: places along a march are not told apart below it.
+/// Shortest flat \[mm\]: a march does not tell places apart that are closer.
 const SHORTEST: f64 = 0.01;
 
 impl FlatShape {
@@ -304,7 +305,7 @@ impl FlatShape {
         Ok(Self { radius, edge_radius, chord, ends })
     }
 
-    /// The stretches of the circumference, in order, for a flat whose middle lies at an angle \[rad\].
+    /// Lists the stretches of the circumference, in order, for a flat whose middle lies at an angle \[rad\].
     fn stretches(&self, middle: f64) -> Vec<HeightStretch> {
         let Self { radius, edge_radius, chord: distance, ends: [chord, circle] } = *self;
         let place = |angle: f64| radius * (middle + angle);

@@ -34,7 +34,7 @@ pub struct Bicubic {
     pub(super) y: Interval,
 }
 
-/// Hermite's four cubics on \[0, 1\] and their first two derivatives: value and slope at 0, value and slope at 1.
+/// Computes Hermite's four cubics on \[0, 1\] and their first two derivatives: of value and slope at 0, of value and slope at 1.
 #[inline(always)]
 pub(super) fn hermite(t: f64) -> [[f64; 4]; 3] {
     let (t2, s) = (t * t, 1.0 - t);
@@ -47,7 +47,7 @@ pub(super) fn hermite(t: f64) -> [[f64; 4]; 3] {
 
 impl Bicubic {
     /// Returns the point at the share f of the cell across and at y \[mm\].
-    // Inline, so that derivatives nobody takes are not computed.
+    // Inline, so that derivatives that the caller does not use are not computed.
     #[inline(always)]
     pub fn point(&self, f: f64, y: f64) -> SurfacePoint {
         let step = self.y.width();

@@ -1,4 +1,4 @@
-//! A body that varies seen from a contact frame: the height ζ of a rail along the track, or of a wheel around its axle.
+//! A body that varies, seen from a contact frame: the height ζ of a rail that varies along the track, or of a wheel around its axle.
 //!
 //! A line along ζ meets the surface at a foot, which Newton's method finds on one strip from a place near it. Such places come from
 //! sections at equal steps along the surface: runs of points over which it faces the other body.
@@ -23,13 +23,13 @@ const FARTHEST: f64 = 4000.0;
 /// How far around the axle from C a wheel is looked at \[rad\].
 const FARTHEST_AROUND: f64 = 1.3;
 
-/// Slope of the surface at C in the frame from which on it touches with an edge: rounding of the place is below, kinks of drawings above.
+/// Least slope of the surface at C, in the frame, at which it touches with an edge: rounding of the place is less, kinks of drawings more.
 const EDGE: f64 = 1e-6;
 
 /// Most steps to a foot; three or four are usual.
 const STEPS: usize = 40;
 
-/// Most steps in which the distance from the line does not shrink to this share of the least so far: there is no foot then.
+/// Most successive steps without a distance from the line below [`SHRINKS`] times the least so far; after more there is no foot.
 const PATIENCE: usize = 4;
 const SHRINKS: f64 = 0.8;
 
@@ -49,8 +49,8 @@ const ROUNDING: f64 = 1e-9;
 /// Distance \[mm\] along ζ by which another head stands in front, with a flangeway between.
 const FLANGEWAY: f64 = 10.0;
 
-/// A body that varies in a contact frame: its origin is C, ξ lies across the track along the surface, η ahead along it, ζ along the normal
-/// from rail to wheel.
+/// A body that varies, in a contact frame: the origin is C, ξ lies across the track along the surface, η ahead along the surface, ζ along
+/// the normal from rail to wheel.
 #[derive(Debug, Clone)]
 pub struct FramedLoft {
     loft: Arc<Loft>,
@@ -62,11 +62,11 @@ pub struct FramedLoft {
     axes: [[f64; 3]; 3],
     /// Coordinate of C along the surface \[mm\].
     along: f64,
-    /// Sections at equal steps, made when they are asked for.
+    /// Sections at equal steps, each made when it is needed.
     levels: Vec<OnceLock<Vec<AscendingRun>>>,
     /// Number of the first section, in steps from C.
     first: i64,
-    /// Whether it is seen along a normal of the other body: feet are asked for at ξ = 0 alone.
+    /// Whether it is seen along a normal of the other body, with feet at ξ = 0 only.
     along_normal: bool,
     /// The tangent plane at C.
     plane: Section,
@@ -167,8 +167,8 @@ impl FramedLoft {
     /// Gives the body in a frame whose origin is the point (ξ, 0, ζ) \[mm\] of this one and whose ζ is (−sin α, 0, cos α); η keeps its
     /// direction.
     ///
-    /// Only feet at ξ = 0 of the new frame may be asked for. Sheets more than 10 mm behind its origin, on the side of the other body's
-    /// material, are left out: ζ meets them on the far side of that body.
+    /// Only feet at ξ = 0 of the new frame may be asked for. Sheets more than 10 mm from the origin, on the side of the other body's
+    /// material, are left out: they lie on the far side of that body.
     pub fn turned(&self, [xi, zeta]: [f64; 2], [sin, cos]: [f64; 2]) -> Self {
         let [across, ahead, up] = self.axes;
         let mixed = |a: f64, b: f64| [0, 1, 2].map(|k| a * across[k] + b * up[k]);
@@ -183,7 +183,7 @@ impl FramedLoft {
         Self { along_normal: true, ..Self::looking(body, (origin, axes), along, self.plane.clone()) }
     }
 
-    /// Which body it is.
+    /// Tells which body it is.
     pub fn side(&self) -> Side {
         match self.laid {
             Laid::Along(_) => Side::Rail,
@@ -191,37 +191,37 @@ impl FramedLoft {
         }
     }
 
-    /// How the surface lies in the body's own axes.
+    /// Tells how the surface lies in the body's own axes.
     pub fn laid(&self) -> Laid {
         self.laid
     }
 
-    /// The surface.
+    /// Gives the surface.
     pub fn loft(&self) -> &Arc<Loft> {
         &self.loft
     }
 
-    /// C in the body's own axes \[mm\]; y of a rail as its list counts.
+    /// Gives C in the body's own axes \[mm\]; y of a rail as its list counts.
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
 
-    /// The directions of ξ, η and ζ in the body's own axes.
+    /// Gives the directions of ξ, η and ζ in the body's own axes.
     pub fn axes(&self) -> [[f64; 3]; 3] {
         self.axes
     }
 
-    /// The tangent plane at C, in the frame.
+    /// Gives the tangent plane at C, in the frame.
     pub(crate) fn plane(&self) -> &Section {
         &self.plane
     }
 
-    /// The coordinate of C along the surface \[mm\]: as the list of a rail counts, or R times the angle around a wheel.
+    /// Gives the coordinate of C along the surface \[mm\]: as the list of a rail counts, or R times the angle around a wheel.
     pub fn along(&self) -> f64 {
         self.along
     }
 
-    /// Returns the coordinate along the surface \[mm\] about which a line along ζ meets it.
+    /// Estimates the coordinate along the surface \[mm\] at which the line along ζ at (ξ, η) \[mm\] meets it.
     pub fn along_at(&self, xi: f64, eta: f64) -> f64 {
         let ahead = self.axes[0][1] * xi + self.axes[1][1] * eta;
         match self.laid {
@@ -244,7 +244,7 @@ impl FramedLoft {
         self.seen(self.laid.place(at, y))
     }
 
-    /// The point (ξ, η, ζ) \[mm\] of a strip, and its derivatives with respect to u and y there.
+    /// Computes the point (ξ, η, ζ) \[mm\] of a strip, and its derivatives with respect to u and y there.
     pub fn seen_at(&self, strip: &LoftStrip, u: f64, y: f64) -> [[f64; 3]; 3] {
         let p = self.laid.point(strip.point(u, y));
         let [across, along] = self.tangents(&p);
@@ -253,8 +253,8 @@ impl FramedLoft {
 
     /// Finds the foot at (ξ, η) \[mm\]; `None` where the body has no surface that faces the other one.
     ///
-    /// Where a line meets several sheets, that nearest to the tangent plane counts, or one up to 10 mm in front of it: what stands farther
-    /// in front belongs to another head. Accuracy: ζ within 1e-12 mm and slopes within 1e-10 on rails of usual size.
+    /// Where a line meets several sheets, the one nearest to the tangent plane counts, or one up to 10 mm in front of it: what stands
+    /// farther in front belongs to another head. Accuracy: ζ within 1e-12 mm and slopes within 1e-10 on bodies of usual size.
     pub fn foot(&self, xi: f64, eta: f64) -> Option<LoftFoot> {
         let (middle, near) = (self.nearest_level(xi, eta), self.along_at(xi, eta));
         let mut feet: Vec<LoftFoot> = Vec::new();
@@ -277,7 +277,7 @@ impl FramedLoft {
             }
         }
         if self.along_normal {
-            // What the normal meets far behind its foot is on the other side of the body that it is of.
+            // What the normal meets beyond the other body's material is on the far side of that body.
             let outward = if self.side() == Side::Rail { 1.0 } else { -1.0 };
             feet.retain(|foot| outward * foot.zeta <= FLANGEWAY);
         }
@@ -292,17 +292,17 @@ impl FramedLoft {
         Some(feet[front.unwrap_or(own)])
     }
 
-    /// Number of the section nearest to a line along ζ, in steps from C.
+    /// Gives the number of the section nearest to a line along ζ, in steps from C.
     fn nearest_level(&self, xi: f64, eta: f64) -> i64 {
         ((self.along_at(xi, eta) - self.along) / LEVEL).round() as i64
     }
 
-    /// The point of a strip in space.
+    /// Computes the point of a strip in space.
     fn point(&self, strip: &LoftStrip, [u, y]: [f64; 2]) -> SpacePoint {
         self.laid.point(strip.point(u, y))
     }
 
-    /// ∂²ζ/∂ξ², ∂²ζ/∂ξ∂η and ∂²ζ/∂η² at C \[1/mm\]; `None` without a surface there, and where it touches with an edge.
+    /// Computes ∂²ζ/∂ξ², ∂²ζ/∂ξ∂η and ∂²ζ/∂η² at C \[1/mm\]; `None` without a surface there, and where it touches with an edge.
     pub fn bends(&self) -> Option<[f64; 3]> {
         let foot = self.foot(0.0, 0.0).filter(|foot| foot.slopes.iter().all(|slope| slope.abs() < EDGE))?;
         let p = self.point(&self.loft.strips[foot.strip], foot.place);
@@ -314,12 +314,12 @@ impl FramedLoft {
         Some([form(per_xi, per_xi), form(per_xi, per_eta), form(per_eta, per_eta)])
     }
 
-    /// ∂/∂u and ∂/∂y of a point in the frame.
+    /// Gives ∂/∂u and ∂/∂y of a point in the frame.
     fn tangents(&self, p: &SpacePoint) -> [[f64; 3]; 2] {
         [p.across, p.along].map(|v| self.axes.map(|axis| dot(axis, v)))
     }
 
-    /// Follows one strip to the foot at (ξ, η); `None` if it has none there that faces the wheel.
+    /// Follows one strip to the foot at (ξ, η); `None` if it has none there that faces the other body.
     fn settle(&self, strip: usize, mut place: [f64; 2], xi: f64, eta: f64) -> Option<LoftFoot> {
         let own = &self.loft.strips[strip];
         let (mut least, mut waited) = (f64::INFINITY, 0);
@@ -348,7 +348,7 @@ impl FramedLoft {
             if share.is_nan() || share <= 0.0 {
                 return None;
             }
-            // A cell or a millimetre beyond is near enough to come back from.
+            // Steps may go a cell or a millimetre beyond the strip, and come back.
             let limits = [Interval::new(0.0, own.cells() as f64), own.reach()].map(|range| range.grown(1.0));
             let next = [0, 1].map(|k| (place[k] + share * step[k]).clamp(limits[k].low, limits[k].high));
             if next == place {
@@ -359,8 +359,8 @@ impl FramedLoft {
         None
     }
 
-    /// Whether all runs near ξ in the sections around a level are of one strip's sheet. A part beside the strip joins it at its end: it is of
-    /// that sheet unless ξ lies within it.
+    /// Tells whether all runs near ξ in the sections around a level belong to one strip's sheet. A neighbouring part joins the strip at
+    /// its end: it belongs to that sheet unless ξ lies within the part.
     fn is_alone(&self, strip: usize, xi: f64, level: i64) -> bool {
         let part = |strip: usize| self.loft.strips[strip].part;
         (level - 1..=level + 1).all(|level| {
@@ -373,7 +373,7 @@ impl FramedLoft {
         })
     }
 
-    /// The range of ξ \[mm\] over which the surface faces the other body between two η \[mm\]; `None` if it does so nowhere.
+    /// Gives the range of ξ \[mm\] over which the surface faces the other body between two η \[mm\]; `None` if it does so nowhere.
     pub fn reach(&self, eta: Interval) -> Option<Interval> {
         let [from, to] = eta.ends().map(|eta| self.nearest_level(0.0, eta));
         let runs = (from..=to).flat_map(|level| self.level(level));
@@ -389,7 +389,7 @@ impl FramedLoft {
     }
 }
 
-/// Whether a place lies on a strip.
+/// Tells whether a place lies on a strip.
 fn on(strip: &LoftStrip, [u, y]: [f64; 2]) -> bool {
     Interval::new(0.0, strip.cells() as f64).grown(ROUNDING).contains(u)
         && strip.reach().grown(ROUNDING).contains(y)
@@ -401,12 +401,12 @@ impl<B: Deref<Target = FramedLoft>> Feet<B> {
         Self { body, last: None }
     }
 
-    /// The body.
+    /// Gives the body.
     pub fn body(&self) -> &FramedLoft {
         &self.body
     }
 
-    /// Forgets the last foot, so that what comes next has the same bits whatever was before.
+    /// Forgets the last foot, so that the next one has the same bits whatever was before.
     pub fn forget(&mut self) {
         self.last = None;
     }
@@ -430,12 +430,12 @@ impl<B: Deref<Target = FramedLoft>> Feet<B> {
 }
 
 impl LoftFoot {
-    /// The upward unit normal (ξ, η, ζ): a rail's outward one, a wheel's inward one.
+    /// Gives the upward unit normal (ξ, η, ζ): a rail's outward one, a wheel's inward one.
     pub fn normal(&self) -> Unit<Vector3<f64>> {
         Unit::new_normalize(Vector3::new(-self.slopes[0], -self.slopes[1], 1.0))
     }
 
-    /// The place that a step in ξ and η \[mm\] leads to along the tangent plane.
+    /// Gives the place to which a step in ξ and η \[mm\] leads along the tangent plane.
     fn moved(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| self.place[k] + xi * self.steps[0][k] + eta * self.steps[1][k])
     }

@@ -1,4 +1,4 @@
-//! A profile that keeps its shape while its height varies along y: closed forms, and cubics beside them that bound them.
+//! A profile that keeps its shape while its height varies along y: closed forms, and cubics that approximate and bound them.
 //!
 //! The height of a point z of the profile is z + d(y), or where its circle about the axle varies in proportion z + (1 + z/R) d(y).
 
@@ -12,13 +12,13 @@ use crate::profile::{Mark, Profile, Shape, trace};
 /// Largest cell across \[mm\]: its cubic is off by 0.1 nm on a 13 mm radius.
 const CELL: f64 = 0.5;
 
-/// Least kink of a profile \[rad\] at which its surface has an edge: where it cannot settle, Newton's method halves its steps to 1 nm.
+/// Least kink \[rad\] at which a profile is divided. Across smaller ones Newton's method may not settle; it then ends within 1 nm.
 const LEAST_KINK: f64 = 1e-6;
 
-/// Least step \[mm\] of a profile at which its surface is interrupted.
+/// Least step \[mm\] at which a profile is divided.
 const LEAST_STEP: f64 = 1e-6;
 
-/// A cubic errs most within a cell of it. Twice what it errs at three places of each bounds that.
+/// Factor that makes the largest error of a cell's cubic at three places inside the cell a bound over all of it.
 const SURE: f64 = 2.0;
 
 /// A part of a profile without kinks, divided into cells.
@@ -28,7 +28,7 @@ pub(super) struct SmoothCurve {
     cells: Vec<CurveCell>,
     /// Bounds of x and z over the cells: see [`tree`].
     pub tree: Vec<[Interval; 2]>,
-    /// How far the cells' cubics may be off \[mm\].
+    /// Bound of the error of the cells' cubics \[mm\].
     off: f64,
 }
 
@@ -46,24 +46,24 @@ struct CurveCell {
 #[derive(Debug, Clone)]
 pub(super) struct HeightStretch {
     form: HeightForm,
-    /// By how much more of it a point of the profile is moved, per mm of its own height \[1/mm\].
+    /// Growth g of the displacement with the height z of a profile's point \[1/mm\]: a height d moves the point by (1 + g z) d.
     growth: f64,
     /// Ends of its cells \[mm\].
     pub at: Vec<f64>,
-    /// Height and slope there.
+    /// Height \[mm\] and slope at these ends.
     rows: Vec<[f64; 2]>,
-    /// How far the cubics between them may be off \[mm\].
+    /// Bound of the error of the cubics between these rows \[mm\].
     off: f64,
 }
 
-/// The closed form of a height; angles are places along y over the radius.
+/// The closed form of a height; its angles are y over the radius.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum HeightForm {
     /// Cubics between the rows.
     Cubics,
     /// A chord of a circle of this radius, at a distance from its centre \[mm\], and the angle of its middle.
     Chord { radius: f64, distance: f64, middle: f64 },
-    /// A circle about a point at a distance and an angle from the centre, in one of this radius.
+    /// A circle of `edge_radius` inside one of `radius`; its centre lies at a distance \[mm\] and an angle from that of the larger one.
     Edge { radius: f64, edge_radius: f64, distance: f64, middle: f64 },
 }
 
@@ -110,7 +110,7 @@ impl SmoothCurve {
         Self { profile: Arc::clone(profile), tree: tree(bounds), cells, off: SURE * off }
     }
 
-    /// Number of cells.
+    /// Gives the number of cells.
     pub fn cells(&self) -> usize {
         self.cells.len()
     }
@@ -119,12 +119,12 @@ impl SmoothCurve {
 /// Shares of a cell at which its cubic is compared.
 const INSIDE: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// Bounds of a cubic over one unit, given its values and slopes \[value, slope\] at both ends.
+/// Bounds a cubic over one unit, given its values and slopes \[value, slope\] at both ends.
 fn hull([[a, from], [b, to]]: [[f64; 2]; 2]) -> Interval {
     Interval::around([a, a + from / 3.0, b, b - to / 3.0])
 }
 
-/// The cubic over a step with values and slopes at its ends: value and first two derivatives at a share of it.
+/// Computes value and first two derivatives, at a share of a step, of the cubic with these values and slopes at the step's ends.
 fn cubic(share: f64, step: f64, [[a, from], [b, to]]: [[f64; 2]; 2]) -> [f64; 3] {
     let h = hermite(share);
     [0, 1, 2].map(|k| {
@@ -132,7 +132,7 @@ fn cubic(share: f64, step: f64, [[a, from], [b, to]]: [[f64; 2]; 2]) -> [f64; 3]
     })
 }
 
-/// The value of Σ c_k f^k, and its first two derivatives.
+/// Computes Σ c_k f^k and its first two derivatives.
 fn value_and_derivatives(c: &[f64], f: f64) -> [f64; 3] {
     let [value, rate, half] = c
         .iter()
@@ -142,7 +142,7 @@ fn value_and_derivatives(c: &[f64], f: f64) -> [f64; 3] {
 }
 
 impl CurveCell {
-    /// Point and first two derivatives at a share.
+    /// Computes the point and its first two derivatives at a share of the cell.
     fn point(&self, profile: &Profile, f: f64) -> [[f64; 2]; 3] {
         if let Some(powers) = &self.powers {
             let axes = powers.each_ref().map(|c| value_and_derivatives(c, f));
@@ -153,7 +153,7 @@ impl CurveCell {
         [at, rate.map(|v| v * width), bend.map(|v| v * width * width)]
     }
 
-    /// The same of its cubic.
+    /// Computes the point of the cell's cubic and its first two derivatives at a share of the cell.
     fn near(&self, f: f64) -> [[f64; 2]; 3] {
         let axes = [0, 1].map(|axis| cubic(f, 1.0, self.ends.map(|end| end.map(|v| v[axis]))));
         [0, 1, 2].map(|k| axes.map(|values| values[k]))
@@ -182,7 +182,7 @@ impl HeightStretch {
         Self { form: HeightForm::Cubics, growth: 0.0, at, rows, off: 0.0 }
     }
 
-    /// Height, slope and second derivative in a cell at y \[mm\].
+    /// Computes height, slope and second derivative in a cell at y \[mm\].
     fn height(&self, cell: usize, y: f64) -> [f64; 3] {
         match self.form {
             HeightForm::Cubics => self.near(cell, y),
@@ -190,13 +190,13 @@ impl HeightStretch {
         }
     }
 
-    /// The same of the cell's cubic.
+    /// Computes height, slope and second derivative of the cell's cubic at y \[mm\].
     fn near(&self, cell: usize, y: f64) -> [f64; 3] {
         let step = self.at[cell + 1] - self.at[cell];
         cubic((y - self.at[cell]) / step, step, [self.rows[cell], self.rows[cell + 1]])
     }
 
-    /// Bounds of the height over a cell, of its cubic \[mm\].
+    /// Bounds the height of the cubic over a cell \[mm\].
     pub fn bounds(&self, cell: usize) -> Interval {
         let step = self.at[cell + 1] - self.at[cell];
         hull([0, 1].map(|k| [self.rows[cell + k][0], step * self.rows[cell + k][1]]))
@@ -211,7 +211,7 @@ impl HeightForm {
         }
     }
 
-    /// Height, slope and second derivative at y \[mm\].
+    /// Computes height, slope and second derivative at y \[mm\].
     fn height(&self, y: f64) -> [f64; 3] {
         match *self {
             Self::Cubics => [0.0; 3],
@@ -242,7 +242,7 @@ pub(super) struct KeptSurface {
 }
 
 impl KeptSurface {
-    /// The point in a cell at a share of it across, and at y \[mm\] in a bay.
+    /// Computes the point at a share of a cell across, and at y \[mm\] in a bay.
     pub fn point(&self, bay: usize, cell: usize, f: f64, y: f64) -> SurfacePoint {
         let [at, across, across2] = self.curve.cells[cell].point(&self.curve.profile, f);
         let [height, slope, bend] = self.stretch.height(bay, y);
@@ -259,7 +259,7 @@ impl KeptSurface {
         }
     }
 
-    /// The bicubic beside a cell.
+    /// Makes the bicubic that approximates a cell.
     pub fn cell(&self, bay: usize, cell: usize) -> Bicubic {
         let HeightStretch { at, rows, growth, .. } = &self.stretch;
         let ends = &self.curve.cells[cell].ends;
@@ -272,13 +272,13 @@ impl KeptSurface {
         Bicubic { corners, y: Interval::new(at[bay], at[bay + 1]) }
     }
 
-    /// Bounds of x and z over a node of the curve's tree, of its bicubics \[mm\].
+    /// Bounds x and z of the bicubics over a node of the curve's tree \[mm\].
     pub fn bounds(&self, bay: usize, node: usize) -> [Interval; 2] {
         let ([x, z], height) = (self.curve.tree[node], self.stretch.bounds(bay));
         [x, z * height.map(|height| 1.0 + self.stretch.growth * height) + height]
     }
 
-    /// How far the bicubics may be off \[mm\].
+    /// Bounds the error of the bicubics \[mm\].
     pub fn off(&self) -> f64 {
         let [_, z] = self.curve.tree[1];
         self.curve.off + self.stretch.off * (1.0 + self.stretch.growth * z.magnitude())

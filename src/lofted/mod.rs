@@ -14,7 +14,7 @@
 //! # A profile that keeps its shape
 //!
 //! A wheel with a flat or a radius that varies has a closed form: its points are those of the profile's own segments, their heights those
-//! of a chord, a circle or a periodic spline. Bicubics beside it bound it, with what they are off.
+//! of a chord, a circle or a periodic spline. Bicubics that approximate it, with a bound of their error, bound it.
 
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ pub enum LoftedBody {
 }
 
 impl LoftedBody {
-    /// Which body it is.
+    /// Tells which body it is.
     pub fn side(&self) -> Side {
         match self {
             Self::Rail(_) => Side::Rail,
@@ -61,7 +61,7 @@ impl LoftedBody {
         }
     }
 
-    /// Names such a body, as messages do.
+    /// Names the body of a side that varies, for messages.
     pub fn name(side: Side) -> &'static str {
         match side {
             Side::Rail => "a rail that varies along the track",
@@ -69,7 +69,7 @@ impl LoftedBody {
         }
     }
 
-    /// Where its slices leave the surface undefined, and why.
+    /// Gives the warnings about its slices: where they leave the surface undefined, and why.
     pub fn warnings(&self) -> &[String] {
         match self {
             Self::Rail(loft) => &loft.warnings,

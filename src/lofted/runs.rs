@@ -32,7 +32,7 @@ pub(super) fn runs(
     let mut runs: Vec<AscendingRun> = Vec::new();
     for (strip, own) in loft.strips.iter().enumerate() {
         let [from, to] = own.reach().ends();
-        // A part that begins within a step is there for the feet that it leads to.
+        // A part that begins or ends within a step has feet that are found from here.
         if y < from - LEVEL || y > to + LEVEL {
             continue;
         }
@@ -78,7 +78,7 @@ fn cells_beside(xi: impl Fn([f64; 2], f64) -> f64, strip: &LoftStrip, y: f64) ->
 }
 
 impl AscendingRun {
-    /// The ξ between its ends \[mm\].
+    /// Gives the interval of ξ between its ends \[mm\].
     pub fn reach(&self) -> Interval {
         Interval::new(self.xi[0], self.xi[self.xi.len() - 1])
     }
@@ -87,13 +87,13 @@ impl AscendingRun {
         self.reach().grown(BESIDE).contains(xi)
     }
 
-    /// Whether ξ \[mm\] lies in it, off its ends.
+    /// Tells whether ξ \[mm\] lies between its ends.
     pub fn covers(&self, xi: f64) -> bool {
         let Interval { low, high } = self.reach();
         low < xi && xi < high
     }
 
-    /// The parameter u at ξ \[mm\], by straight lines.
+    /// Gives the parameter u at ξ \[mm\], by linear interpolation.
     pub fn place(&self, xi: f64) -> f64 {
         let k = self.xi.partition_point(|at| *at <= xi).clamp(1, self.xi.len() - 1);
         let share = (xi - self.xi[k - 1]) / (self.xi[k] - self.xi[k - 1]);

@@ -5,7 +5,7 @@ use super::strip::LoftStrip;
 use crate::error::{Error, Result};
 use crate::profile::{Polynomial, Profile, Segment, Shape};
 
-/// Distance \[mm\] of the ends of two parts beside each other from which on they do not join: more than the rounding of slices.
+/// Largest distance \[mm\] between the ends of two neighbouring parts that join: more than the rounding of slices.
 const STEP: f64 = 1e-3;
 
 /// Returns the section at y \[mm\] through one of the strips, as far as its neighbours join it: exactly the cut of the surface, one
@@ -25,7 +25,7 @@ pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
     Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
 }
 
-/// Lists the strips that join each other across at y \[mm\] from one of them, by ascending x.
+/// Lists the strips that join each other across at y \[mm\], one of which is given, by ascending x.
 pub fn joined(loft: &Loft, strip: usize, y: f64) -> Vec<usize> {
     let strips = &loft.strips;
     let ends = |k: usize| [0.0, strips[k].cells() as f64].map(|u| strips[k].point(u, y).at);

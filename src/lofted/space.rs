@@ -5,7 +5,7 @@
 
 use super::bicubic::SurfacePoint;
 
-/// How a surface lies in its body's own axes: x across, y ahead, z out of the body. The world is upside down for a wheel.
+/// How a surface lies in its body's own axes: x across, y ahead, z out of the body: up on a rail, down on a wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Laid {
     /// Along the track; y is 0 at this coordinate of the list \[mm\].
@@ -38,13 +38,14 @@ pub struct SpacePoint {
     pub along2: [f64; 3],
 }
 
-/// The directions out from a wheel's axle and around it, forward, at an angle from the lowest meridian; the world upside down.
+/// Gives the directions out from a wheel's axle, and forward around it, at an angle \[rad\] from the lowest meridian; z points down.
 pub(crate) fn directions(angle: f64) -> [[f64; 3]; 2] {
     let (sin, cos) = angle.sin_cos();
     [[0.0, sin, cos], [0.0, cos, -sin]]
 }
 
-/// The point at the height h and at τ \[mm\] along the tangent plane of a wheel of radius R, at an angle from the lowest meridian.
+/// Gives the point at the height h and at τ \[mm\] along the tangent plane of a wheel of radius R, at an angle \[rad\] from the lowest
+/// meridian; z points down.
 pub(crate) fn on_wheel(radius: f64, angle: f64, [x, h, tau]: [f64; 3]) -> [f64; 3] {
     let [out, around] = directions(angle);
     let half = (0.5 * angle).sin();
@@ -53,7 +54,7 @@ pub(crate) fn on_wheel(radius: f64, angle: f64, [x, h, tau]: [f64; 3]) -> [f64; 
 }
 
 impl Laid {
-    /// Distance of the axle from the level of the profile's origin \[mm\]; infinite for a rail.
+    /// Gives the distance from the axle to the profile's origin \[mm\]; infinite for a rail.
     pub fn radius(&self) -> f64 {
         match *self {
             Self::Along(_) => f64::INFINITY,
@@ -71,7 +72,7 @@ impl Laid {
     }
 
     /// Takes a point of the surface into space.
-    // Inline, so that derivatives nobody takes are not computed.
+    // Inline, so that derivatives that the caller does not use are not computed.
     #[inline(always)]
     pub fn point(&self, own: SurfacePoint) -> SpacePoint {
         let SurfacePoint { at, across, along, across2, mixed, along2, .. } = own;

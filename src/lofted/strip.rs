@@ -12,7 +12,7 @@ use crate::numerics::interval::Interval;
 /// A part of the surface without interruption: over u from 0 to [`LoftStrip::cells`], and over y from its first slice to its last.
 #[derive(Debug, Clone)]
 pub struct LoftStrip {
-    /// Number of the part that it is of, from 0 at the side of the track's centre.
+    /// Number of the part that it belongs to, from 0 at the side of the track's centre.
     pub part: usize,
     at: Vec<f64>,
     cells: usize,
@@ -71,13 +71,13 @@ impl LoftStrip {
         Self { part, at, cells, surface: StripSurface::Joined { corners, trees } }
     }
 
-    /// Takes a profile's part that keeps its shape over a stretch.
+    /// Makes the strip of a profile's part that keeps its shape over a stretch.
     pub(super) fn kept(part: usize, curve: &Arc<SmoothCurve>, stretch: &HeightStretch) -> Self {
         let kept = KeptSurface { curve: Arc::clone(curve), stretch: stretch.clone() };
         Self { part, at: stretch.at.clone(), cells: curve.cells(), surface: StripSurface::Kept(kept) }
     }
 
-    /// How far its surface may be off the cells' bicubics \[mm\].
+    /// Bounds the distance of its surface from the cells' bicubics \[mm\].
     pub fn off(&self) -> f64 {
         match &self.surface {
             StripSurface::Joined { .. } => 0.0,
@@ -85,39 +85,39 @@ impl LoftStrip {
         }
     }
 
-    /// Number of cells across.
+    /// Gives the number of cells across.
     pub fn cells(&self) -> usize {
         self.cells
     }
 
-    /// The interval of y that it covers \[mm\].
+    /// Gives the interval of y that it covers \[mm\].
     pub fn reach(&self) -> Interval {
         Interval::new(self.at[0], self.at[self.at.len() - 1])
     }
 
-    /// Whether it has a surface at y \[mm\].
+    /// Tells whether it has a surface at y \[mm\].
     pub fn holds(&self, y: f64) -> bool {
         self.reach().contains(y)
     }
 
-    /// The bays between its slices, in order.
+    /// Lists the bays between its slices, in order.
     pub fn bays(&self) -> impl Iterator<Item = Bay<'_>> {
         (1..self.at.len()).map(|k| self.bay(k - 1))
     }
 
-    /// One of the bays.
+    /// Gives one of the bays.
     pub fn bay(&self, index: usize) -> Bay<'_> {
         Bay { strip: self, index }
     }
 
-    /// The bay that holds y \[mm\], or is next to it.
+    /// Finds the bay that holds y \[mm\], or is next to it.
     pub fn bay_at(&self, y: f64) -> Bay<'_> {
         let after = self.at.partition_point(|at| *at <= y);
         self.bay(after.clamp(1, self.at.len() - 1) - 1)
     }
 
     /// Returns the point at (u, y \[mm\]); parameters beyond the strip continue its last cubics.
-    // Inline, as that of a bicubic is.
+    // Inline, so that derivatives that the caller does not use are not computed.
     #[inline(always)]
     pub fn point(&self, u: f64, y: f64) -> SurfacePoint {
         let cell = (u.max(0.0) as usize).min(self.cells - 1);
@@ -132,17 +132,17 @@ impl LoftStrip {
 }
 
 impl<'a> Bay<'a> {
-    /// Number of the bay in its strip, from 0.
+    /// Gives the number of the bay in its strip, from 0.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Its ends \[mm\].
+    /// Gives its ends \[mm\].
     pub fn y(&self) -> Interval {
         Interval::new(self.strip.at[self.index], self.strip.at[self.index + 1])
     }
 
-    /// The bicubic of one of its cells, or beside it: see [`LoftStrip::off`].
+    /// Gives the bicubic of one of its cells, or one that approximates the cell: see [`LoftStrip::off`].
     pub fn cell(&self, cell: usize) -> Bicubic {
         let LoftStrip { at, cells, surface, .. } = self.strip;
         match surface {
@@ -151,7 +151,7 @@ impl<'a> Bay<'a> {
         }
     }
 
-    /// Bounds of x and z \[mm\] over a node of its tree, whose root is 1: of the bicubics.
+    /// Bounds x and z of the bicubics \[mm\] over a node of its tree, whose root is 1.
     pub fn bounds(&self, node: usize) -> [Interval; 2] {
         match &self.strip.surface {
             StripSurface::Joined { trees, .. } => trees[self.index][node],
@@ -159,12 +159,12 @@ impl<'a> Bay<'a> {
         }
     }
 
-    /// The one cell of a node of its tree; `None` of a node with two children.
+    /// Gives the one cell of a leaf of its tree; `None` for a node with two children.
     pub fn only_cell(&self, node: usize) -> Option<usize> {
         node.checked_sub(self.leaves())
     }
 
-    /// The cells of a node of its tree.
+    /// Lists the cells of a node of its tree; none for a leaf beyond the last cell.
     pub fn cells(&self, node: usize) -> Range<usize> {
         let leaves = self.leaves();
         let below = leaves.ilog2() - node.ilog2();
@@ -177,7 +177,7 @@ impl<'a> Bay<'a> {
     }
 }
 
-/// The bicubic of a cell of a bay.
+/// Makes the bicubic of a cell of a bay.
 #[inline(always)]
 fn joined(corners: &[CornerValues], cells: usize, at: &[f64], [bay, cell]: [usize; 2]) -> Bicubic {
     let corner = |a: usize, b: usize| corners[(bay + b) * (cells + 1) + cell + a];

@@ -2,7 +2,8 @@
 
 use crate::numerics::interval::Interval;
 
-/// A binary tree of bounds over those of cells, with its root at 1: the children of k are 2k and 2k + 1, and the last half are the cells.
+/// Makes a binary tree of bounds over those of cells, with its root at 1: the children of k are 2k and 2k + 1, the last half are the
+/// cells.
 pub(super) fn tree(cells: impl ExactSizeIterator<Item = [Interval; 2]>) -> Vec<[Interval; 2]> {
     let leaves = cells.len().next_power_of_two();
     let mut tree = vec![[Interval::NONE; 2]; leaves];

@@ -98,12 +98,12 @@ pub fn groups(patch: &Patch, merge: f64, spacing: Option<[f64; 2]>) -> Vec<GridG
     grouped(&patch.components.iter().map(part).collect::<Vec<_>>(), merge, spacing)
 }
 
-/// What groups are made by of a component.
+/// The data of a component by which it is put into a group.
 #[derive(Debug, Clone, Copy)]
 struct GridPart {
     /// The box around the component \[mm\].
     extent: Window,
-    /// Its smallest s \[mm\].
+    /// Smallest s on the component \[mm\].
     least: f64,
 }
 
@@ -133,7 +133,7 @@ impl GridGroup {
     /// that end have no separation.
     ///
     /// # Errors
-    /// A spacing that is not positive, or a grid that does not fit into memory.
+    /// A spacing that is not positive; a grid of more than 10⁸ points, or 10⁶ on an axis.
     pub fn axes(&self, spacing: Option<[f64; 2]>) -> Result<Axes> {
         match spacing {
             Some(spacing) => lattice(&self.extent, spacing),
@@ -147,8 +147,8 @@ impl GridGroup {
         spacing.map_or(self.short_side / CELLS_ACROSS, |[xi, eta]| xi.max(eta))
     }
 
-    /// Returns whether the automatic grid over this group reaches into another group. Part of its margin would lie in that
-    /// group's patch.
+    /// Returns whether the grid over this group reaches into another group. Part of its margin would then lie in that group's
+    /// patch.
     fn cuts(&self, other: &Self, spacing: Option<[f64; 2]>) -> bool {
         self.axes(spacing).is_ok_and(|axes| distance(&axes.window(), &other.extent) <= 0.0)
     }

@@ -18,7 +18,7 @@ const MOST_SAMPLES: usize = 4096;
 /// of the smallest angle of the mesh.
 const LARGEST_TURN: f64 = 0.09;
 
-/// Length, as a share of a component's extents, down to which a turn is looked into. A round tip below it is a corner.
+/// Length, as a share of a component's extents, down to which steps beside a turn are halved. A smaller round tip counts as a corner.
 const LEAST_STEP: f64 = 1e-6;
 
 /// Distance, as a share of a component's extents, below which two points are one. It is far above rounding and far below
@@ -98,12 +98,12 @@ impl<'a> BoundaryTracer<'a> {
         point
     }
 
-    /// Returns the place on a ring at a distance \[mm\] from the place `at` of its point, before it (−1) or after it (1).
+    /// Returns the place on a ring, before (`sense` −1) or after (1) the place `at`, whose point is at a distance \[mm\] from that of `at`.
     pub(super) fn away(&mut self, ring: &Ring, at: f64, sense: f64, distance: f64) -> f64 {
         let corner = self.point(ring, at);
         let place = |way: f64| (at + sense * way).rem_euclid(ring.length);
         let off = |way: f64| (self.point(ring, place(way)) - corner).norm() - distance;
-        // No curve is shorter than its chord; one twice as long has turned.
+        // No curve is shorter than its chord, and it is twice as long only where it turns back.
         at + sense * bracketed(off, 0.0, 2.0 * distance).unwrap_or(distance)
     }
 
@@ -175,8 +175,8 @@ impl<'a> BoundaryTracer<'a> {
         }
     }
 
-    /// Halves the steps beside every turn that is too large, also those along straight walls: edges toward a corner follow its
-    /// width sample by sample. Returns whether there was one.
+    /// Halves the steps beside every turn that is too large, also those along straight walls, because the edge lengths near a
+    /// corner are found from the samples. Returns whether any step was halved.
     fn refine(&mut self, ring: &mut Ring) -> bool {
         let n = ring.samples.len();
         let least = LEAST_STEP * self.extent;
@@ -254,8 +254,8 @@ impl Ring {
         Vector2::new(-along.y, along.x).normalize()
     }
 
-    /// Returns the largest radius \[mm\] of a circle that touches the line at `here`, with its centre toward `inward`, before the
-    /// chord from sample `k` to the next faces it; infinite if it passes the chord.
+    /// Returns the radius \[mm\] of the circle through `here`, with its centre toward `inward`, that touches the chord from sample
+    /// `k` to the next; infinite if it touches the chord's line beyond its ends, or if the chord does not face `here`.
     pub(super) fn facing(&self, k: usize, here: Point2<f64>, inward: &Vector2<f64>) -> f64 {
         let (from, to) = (self.samples[k].point, self.next(k));
         let (chord, length) = (to - from, (to - from).norm());

@@ -14,22 +14,22 @@ type DirectedEdge<'a> =
 /// Smallest angle \[degrees\] asked of the refinement.
 const ANGLE: f64 = 30.5;
 
-/// Points of the interior and triangles of a region.
+/// Points and triangles of a region.
 #[derive(Debug, Clone)]
 pub(super) struct MeshRegion {
     /// Points (ξ, η) \[mm\]: those given, then the new ones.
     pub(super) points: Vec<Point2<f64>>,
     /// Corners of the triangles, counter-clockwise.
     pub(super) triangles: Vec<[usize; 3]>,
-    /// The edges given that were divided: index of the edge, and ascending shares of its length.
+    /// The given edges that were divided: index of the edge, and ascending shares of its length.
     pub(super) divided: Vec<(usize, Vec<f64>)>,
 }
 
-/// Triangulates the region bounded by closed chains of edges, with more points inside it if its triangles are worse than
-/// asked for. Edges are divided if need be, unless `keep` is set.
+/// Triangulates the region bounded by closed chains of edges. Points are added inside it until no triangle is larger than
+/// `largest_area` \[mm²\] or has an angle below [`ANGLE`]. Edges are divided where that needs it, unless `keep` is set.
 ///
 /// # Errors
-/// Edges that cross; more points than allowed.
+/// Edges that cross; more than `most_points` added points.
 pub(super) fn refined(
     points: &[Point2<f64>],
     edges: &[[usize; 2]],

@@ -13,16 +13,17 @@ use crate::profile::{Profile, Station, trace};
 /// How far a shell is carried beyond what the profile describes \[mm\], so that it has a back.
 const BACK: f64 = 20.0;
 
-/// Steps along and across the shells of bodies that vary \[mm\].
+/// Step along the shells of bodies that vary \[mm\].
 const ALONG: f64 = 10.0;
+/// Step across the shells of bodies that vary \[mm\].
 const ACROSS: f64 = 1.0;
 
 /// Step of the traces that outlines are thinned from \[mm\].
 const TRACED: f64 = 0.25;
 
-/// Least step of these traces, as a share of the profile's extent, and least tolerance of a shell, as a share of its body's size:
-/// nobody sees less. They bound the points of a body of any size.
+/// Least step of these traces, as a share of the profile's extent. It bounds the number of points of a body of any size.
 const FINEST_TRACE: f64 = 2e-4;
+/// Least tolerance of a shell, as a share of its body's size: less is invisible. It bounds the number of points, too.
 const FINEST: f64 = 1e-5;
 
 /// A closed surface of polygons: a prism or an arc of a ring, with both ends.
@@ -36,8 +37,8 @@ pub struct BodyShell {
 
 impl BodyShell {
     /// Makes a piece of the rail from −`half_length` to `half_length` \[mm\] along η. The outline departs from the profile by at most
-    /// `tolerance` \[mm\], or by a hundred-thousandth of its extent, and is closed below it.
-    /// The rim of a roller is as long, up to the whole circumference.
+    /// `tolerance` \[mm\] or a hundred-thousandth of its extent, whichever is more, and is closed below it. The rim of a roller is as
+    /// long, up to the whole circumference.
     pub fn rail(placement: &Placement, half_length: f64, tolerance: f64) -> Self {
         if let Some(under) = placement.under() {
             let half_angle = (half_length / under.rolling_radius()).min(PI);
@@ -60,8 +61,8 @@ impl BodyShell {
     }
 
     /// Makes the rim of the wheel, before any approach, from −`half_angle` to `half_angle` \[rad\] about the axle, 0 at C. The
-    /// surface departs from the wheel's by at most `tolerance` \[mm\], or by a hundred-thousandth of its size, and the outline is
-    /// closed above the profile.
+    /// outline departs from the profile, and a chord about the axle from its circle at the rolling radius, by at most `tolerance`
+    /// \[mm\] or a hundred-thousandth of the size, whichever is more. The outline is closed above the profile.
     pub fn wheel(placement: &Placement, half_angle: f64, tolerance: f64) -> Self {
         if let Some(lofted) = placement.lofted_wheel() {
             let mut rim = Self::lofted(lofted, half_angle * placement.wheel_radius());
@@ -81,7 +82,7 @@ impl BodyShell {
         Self::swept((0..=count as usize).map(turned).collect())
     }
 
-    /// Makes the parts of a body that varies, as far along its surface from C, each closed inside the body.
+    /// Makes the parts of a body that varies, up to `half_length` \[mm\] along its surface from C, each closed inside the body.
     fn lofted(lofted: &FramedLoft, half_length: f64) -> Self {
         let (middle, deepest) = (lofted.along(), -lofted.laid().radius());
         let mut all = Self { points: Vec::new(), faces: Vec::new() };
@@ -120,7 +121,7 @@ impl BodyShell {
         self
     }
 
-    /// Joins equal outlines, one after the other, by quadrilaterals, and closes both ends.
+    /// Joins outlines of equally many points, one after the other, by quadrilaterals, and closes both ends.
     fn swept(outlines: Vec<Vec<Point3<f64>>>) -> Self {
         let (count, around) = (outlines.len(), outlines.first().map_or(0, Vec::len));
         let at = |section: usize, k: usize| section * around + k % around;

@@ -2,14 +2,14 @@
 
 use nalgebra::Point2;
 
-/// Passes over all inner nodes.
+/// Number of passes over all inner nodes.
 const PASSES: usize = 4;
 
 /// Sine of the smallest angle that a move may leave behind if it makes the smallest angle around a node smaller.
 const GOOD: f64 = 0.6;
 
 /// Moves every inner node, in order, to the mean of the centroids of the triangles around it, weighted by their areas, if
-/// the smallest angle there does not get worse, or stays good. Nodes before `fixed` stay.
+/// the smallest angle there does not become smaller, or its sine stays above [`GOOD`]. Nodes before `fixed` stay.
 pub(super) fn smooth(points: &mut [Point2<f64>], triangles: &[[usize; 3]], fixed: usize) {
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); points.len()];
     for (k, triangle) in triangles.iter().enumerate() {

@@ -21,13 +21,13 @@ const GROWTH: f64 = 0.25;
 /// Edges per radius of the largest circle inside the component.
 const EDGES_PER_RADIUS: f64 = 1.0;
 
-/// The same behind a tip, whose third side is as long as the width.
+/// Edges per radius of the largest circle behind a tip, whose third side is as long as the component is wide there.
 const EDGES_PER_WEDGE: f64 = 0.6;
 
-/// Interior angle \[rad\] below which a corner is sharp: edges of one length on both of its sides would see each other.
+/// Interior angle \[rad\] below which a corner is sharp: equal edges on its two sides end closer to each other than they are long.
 const SHARP: f64 = FRAC_PI_3;
 
-/// Share of the circle in a wedge of straight sides from which on a circle inside the component counts as that of the corner.
+/// Least radius of a circle that counts as lying between the two sides of a corner, as a share of its radius between straight sides.
 const WEDGE: f64 = 0.75;
 
 /// Largest length of the edges at a sharp corner, as a share of the boundary up to the next corner.
@@ -36,8 +36,8 @@ const CORNER_SHARE: f64 = 0.25;
 /// Least number of edges of a ring without corners.
 const LEAST_EDGES: f64 = 3.0;
 
-/// Most edges of the boundary of a component. Edges are as long as it is wide, so that one with more is twenty thousand times as
-/// long as it is wide, and nothing is computed over such a mesh.
+/// Most edges of the boundary of a component. Edges are about as long as the component is wide, so that one with more edges is twenty
+/// thousand times as long as wide, and no solver computes over such a mesh.
 const MOST_EDGES: f64 = 4e4;
 
 /// A node of the boundary.
@@ -58,7 +58,7 @@ pub(super) struct EdgeLimits {
     pub(super) size: f64,
     /// Largest distance of the curve from an edge \[mm\].
     pub(super) chord_error: f64,
-    /// Share of the lengths that they would have otherwise, at most 1.
+    /// Factor, at most 1, by which all edges are shortened.
     pub(super) share: f64,
 }
 
@@ -79,7 +79,7 @@ struct Wanted {
 /// Returns the nodes of each ring, in its order.
 ///
 /// # Errors
-/// More than 100,000 edges, counted before any node is made.
+/// More than 40,000 edges, counted before any node is made.
 pub(super) fn nodes(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
@@ -122,7 +122,7 @@ fn corners_of(ring: &Ring) -> Vec<RingCorner> {
     corners.map(|sample| RingCorner { sample, angle: PI - ring.samples[sample].turn }).collect()
 }
 
-/// Returns for each ring the radius \[mm\] of the largest circle that touches the boundary from inside at every sample and holds
+/// Returns, for every sample of each ring, the radius \[mm\] of the largest circle that touches the boundary there from inside, holds
 /// no sample of any ring and crosses no chord that faces it; infinite at corners.
 fn circles(rings: &[Ring]) -> Vec<Vec<f64>> {
     let points: Vec<Point2<f64>> =
@@ -159,7 +159,7 @@ fn is_wedge(ring: &Ring, corner: &RingCorner, sample: usize, circle: f64) -> boo
     corner.angle < PI && circle >= WEDGE * away * (corner.angle / 2.0).tan()
 }
 
-/// Returns the edge length at every sample that follows from size, curvature and circles, but not from wedges at corners.
+/// Returns the edge length at every sample that follows from size, curvature and circles, except circles between the sides of a corner.
 fn own_lengths(ring: &Ring, corners: &[RingCorner], circles: &[f64], limits: EdgeLimits) -> Vec<Wanted> {
     let length = |k: usize| {
         if ring.is_corner(k) {
@@ -185,7 +185,7 @@ fn corner_gap(ring: &Ring, corners: &[RingCorner], sample: usize) -> f64 {
     corners.iter().filter(|other| other.sample != sample).map(gap).fold(ring.length, f64::min)
 }
 
-/// Returns the lengths of the polygon from before to after each sharp corner at which its two edges end.
+/// Returns for each sharp corner the two lengths of the polygon, before and after it, at which its two edges end \[mm\].
 fn protected(
     tracer: &mut BoundaryTracer<'_>,
     ring: &Ring,
@@ -202,7 +202,7 @@ fn protected(
     sharp.map(around).collect()
 }
 
-/// Adds what the wedge of a sharp corner asks for beyond the corner's own two edges. Within them nothing is asked for.
+/// Limits the edge lengths between the two sides of a sharp corner beyond the corner's own two edges. Along these there is no limit.
 fn narrow(
     ring: &Ring,
     corners: &[RingCorner],
@@ -222,7 +222,7 @@ fn narrow(
     }
 }
 
-/// Returns the edge length at a point that grows slowly enough from all others.
+/// Returns the edge length at a point: no wanted length is exceeded by more than [`GROWTH`] times its distance.
 fn graded(point: &Point2<f64>, wanted: &[Wanted]) -> f64 {
     wanted.iter().map(|w| w.length + GROWTH * (w.point - point).norm()).fold(f64::INFINITY, f64::min)
 }
@@ -255,7 +255,7 @@ fn divided(
         |at: f64| corners.iter().any(|corner| corner.angle < SHARP && ring.samples[corner.sample].at == at);
     let node = |at: f64| BoundaryNode { point: tracer.point(ring, at), at, tip: sharp(at).then_some(1) };
     let mut nodes: Vec<BoundaryNode> = places.into_iter().map(node).collect();
-    // No chain begins with a tip, so that the nodes on both sides of a tip have places in it.
+    // No chain begins with a tip: the node before a tip is the one before it in the list.
     if nodes.first().is_some_and(|node| node.tip.is_some()) {
         nodes.rotate_left(1);
     }
@@ -329,7 +329,7 @@ impl<'a> EdgeCounts<'a> {
     }
 }
 
-/// Halves edges until the chord error keeps its bound.
+/// Halves edges until the chord error is within its bound.
 fn halved(
     tracer: &mut BoundaryTracer<'_>,
     ring: &Ring,

@@ -22,7 +22,7 @@ use crate::patch::{Band, BandPlaces, Component, Patch};
 use crate::placement::Placement;
 use crate::separation::Evaluator;
 
-/// Most cells of a mesh. With more, cells are smaller than the accuracy of the patch, which can only be a mistake.
+/// Most cells of a component. With more, cells are smaller than the accuracy of the patch, which can only be a mistake.
 const MOST_CELLS: f64 = 1e7;
 
 /// Least distance of a corner of the boundary from another corner or an end, as a share of a strip, at which it gets a
@@ -107,7 +107,7 @@ impl StripMesh {
     /// Makes the mesh of a patch of this placed pair. An empty patch gives an empty mesh.
     ///
     /// # Errors
-    /// Fewer than 2 strips; no cell across; more than 10⁷ cells.
+    /// Fewer than 2 strips; no cell across; more than 10⁷ cells a component.
     pub fn new(placement: &Placement, patch: &Patch, counts: StripCounts) -> Result<Self> {
         counts.check()?;
         let mut builder = StripBuilder {
@@ -191,7 +191,7 @@ impl StripBuilder<'_> {
         }
     }
 
-    /// Appends the cells between two rows of points. `place` holds the indices of the component and of the strip.
+    /// Appends the cells between two rows of points as a strip of a component, which are given by their indices.
     fn strip(
         &mut self,
         band: &Band,
@@ -222,8 +222,8 @@ impl StripBuilder<'_> {
         }
     }
 
-    /// Adds the points of one strip edge between two η \[mm\], ascending in η, and gives their indices. They are equal if the edge has no
-    /// width.
+    /// Adds the points of one strip edge between two η \[mm\], ascending in η, and puts their indices into `row`. These are all equal
+    /// if the edge has no width.
     fn row(&mut self, shares: &[f64], xi: f64, eta: Interval, row: &mut Vec<usize>) {
         let points = &mut self.mesh.points;
         let first = points.len();
@@ -287,8 +287,8 @@ fn tip_first(quad @ [a, b, c, d]: [usize; 4]) -> Option<[usize; 4]> {
     }
 }
 
-/// Returns ξ of the strip edges of a band \[mm\], so many strips per mm. Corners of the boundary are edges; between two
-/// corners the edges are equal steps of the angle.
+/// Returns ξ of the strip edges of a band \[mm\]. Corners of the boundary are edges, except those closer than [`LEAST_STRIP`] to
+/// another edge; between two corners the edges are equal steps of the angle.
 fn strip_edges(band: &Band, strips_per_mm: f64) -> Vec<f64> {
     let grading = band.grading();
     let strips = (strips_per_mm * band.xi.width()).round().max(2.0);

@@ -84,7 +84,8 @@ impl Surface {
     }
 
     /// Makes the surface of a rail or roller over a window of the contact frame, as far as its profile goes. The window is
-    /// widened to hold C, which is one of the points. Along η a rail is straight and is divided like the wheel.
+    /// widened along ξ to hold C, which is one of the points if η = 0 is in it. Along η a rail is straight and is divided like
+    /// the wheel.
     ///
     /// `tolerance` \[mm\]: largest distance of the surface from the facets between its points.
     ///
@@ -113,8 +114,8 @@ impl Surface {
         Self::of(Side::Rail, &stations, along.len(), nodes)
     }
 
-    /// Makes the surface of a body that varies over its own cells: of the parts that join each other across at C, as far ahead and behind
-    /// as all of them go.
+    /// Makes the surface of a body that varies, on the cells of its own surface: of the parts that join each other across at C, as far
+    /// ahead and behind as all of them reach.
     fn lofted(lofted: &FramedLoft, window: &Window) -> Result<Self> {
         let nowhere = || Error::new("surface", "no surface of the body at C", "one", "choose another place");
         let foot = lofted.foot(0.0, 0.0).ok_or_else(nowhere)?;
@@ -155,9 +156,9 @@ impl Surface {
         Ok(Self { side, n: [nodes.len(), places.len()], points, normals })
     }
 
-    /// Makes the wheel's surface, before any approach, over a window of the contact frame, as far as its profile goes. C is
-    /// one of the points. The whole profile is turned by the angle at which its smallest circle spans the window. Half of
-    /// `tolerance` \[mm\] goes to the profile, half to the rotation.
+    /// Makes the wheel's surface, before any approach, over a window of the contact frame, as far as its profile goes. C is one
+    /// of the points if η = 0 is in the window. The whole profile is turned by the angle at which its smallest circle spans the
+    /// window. Half of `tolerance` \[mm\] goes to the profile, half to the rotation.
     ///
     /// # Errors
     /// A window that is not finite or wider than the wheel; a tolerance that is not positive, or takes too many points.
@@ -190,7 +191,7 @@ impl Surface {
         Ok(Self { side, n, points, normals })
     }
 
-    /// Returns a wheel's surface as that of the roller that it is upside down.
+    /// Returns a wheel's surface mirrored under ζ → −ζ, which makes it the surface of a roller.
     fn upside_down(self) -> Self {
         let points = self.points.iter().map(|p| Point3::new(p.x, p.y, -p.z)).collect();
         let normals = self.normals.iter().map(|n| Vector3::new(n.x, n.y, -n.z)).collect();

@@ -62,7 +62,7 @@ impl Tracer<'_> {
         let roots = (0..SEARCHED_INTERVALS).filter_map(|k| bracketed(xi, step(k), step(k + 1)));
         let height = |share: f64| at(segment, share).seen_from(&self.body.section.frame).z.abs();
         let nearest = roots.min_by(|a, b| height(*a).total_cmp(&height(*b)));
-        // C is an end of the segment, and rounding has moved it off the segment.
+        // Without a root C is an end of the segment, and rounding has moved it off the segment.
         nearest.unwrap_or(if xi(0.0).abs() <= xi(1.0).abs() { 0.0 } else { 1.0 })
     }
 

@@ -39,17 +39,17 @@ const MOST_ADDED: f64 = 1e5;
 /// Most rounds of refinement in which edges of the boundary are divided.
 const ROUNDS: usize = 12;
 
-/// Nodes made in all attempts and rounds at a component from which on no better mesh is looked for: a few seconds.
+/// Most nodes made in all attempts and rounds at a component before the best mesh so far is taken: a few seconds.
 const MOST_MADE: usize = 2_000_000;
 
-/// Number of edges around a thin part from which on they take the triangulation longer than as many points elsewhere: its time grows with
-/// their square.
+/// Number of edges around a thin part above which they take the triangulation longer than as many points elsewhere: its time grows
+/// with their square.
 const LONG_BOUNDARY: usize = 5_000;
 
 /// Attempts at a component, each with shorter edges of the boundary than the one before.
 const ATTEMPTS: i32 = 6;
 
-/// Length of those edges, as a multiple of those of the attempt before.
+/// Length of the boundary's edges in an attempt, as a multiple of their length in the attempt before.
 const SHORTER: f64 = 0.85;
 
 /// Rounds of smoothing, each with a new triangulation.
@@ -68,8 +68,9 @@ pub struct BoundaryChain {
 
 /// The graded triangle mesh of all components of a patch.
 ///
-/// Angles: every triangle has angles from 30° to 120°, except those with a corner of the patch that is sharper than 30°. Boundary:
-/// every node of it lies on the exact curve s = δ, or on the edge of the window or of a body that cuts the patch there.
+/// Angles: triangles have angles from 30° to 120°, except those with a corner of the patch that is sharper than 30°. Where no attempt
+/// reaches that, the mesh is the best one found, and [`TriangleMesh::smallest_angle`] tells how good it is. Boundary: every node of it
+/// lies on the exact curve s = δ, or on the edge of the window or of a body that cuts the patch there.
 ///
 /// # Examples
 /// ```
@@ -113,8 +114,8 @@ impl TriangleMesh {
     /// square with its area. An empty patch gives an empty mesh.
     ///
     /// # Errors
-    /// A size that is not positive, or that gives more than 10⁶ cells; a boundary that meets itself; a part of the patch as small
-    /// as the rounding of its coordinates.
+    /// A size that is not positive, or that gives more than 10⁶ cells; a boundary that meets itself, or takes more than 40,000
+    /// edges; a part of the patch as small as the rounding of its coordinates.
     pub fn new(placement: &Placement, patch: &Patch, size: Option<f64>) -> Result<Self> {
         let mut mesh = Self {
             points: Vec::new(),
@@ -154,7 +155,7 @@ impl TriangleMesh {
     }
 
     /// Returns the area of the triangles of a component in the ξ–η plane \[mm²\]. It differs from that of the component by
-    /// the chord error.
+    /// what lies between the boundary's edges and the curve.
     pub fn area(&self, component: usize) -> f64 {
         let own = self.triangles.iter().zip(&self.component).filter(|(_, own)| **own == component);
         let area = |triangle: &[usize; 3]| {
@@ -202,7 +203,7 @@ impl TriangleMesh {
     }
 }
 
-/// Returns a size of triangles \[mm\] if it can be meant.
+/// Returns a size of triangles \[mm\] if it is positive.
 ///
 /// # Errors
 /// A size that is not positive and finite.
@@ -225,8 +226,8 @@ fn checked(component: &Component, size: f64) -> Result<f64> {
     Ok(size)
 }
 
-/// Meshes the region inside the rings until all angles are good, with shorter and shorter edges of the boundary. If none is,
-/// the result is the best one.
+/// Meshes the region inside the rings until all angles are good, with shorter and shorter edges of the boundary. If no attempt
+/// succeeds, the result is the one with the largest smallest angle.
 fn best(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
@@ -264,8 +265,8 @@ fn least_angle(region: &MeshRegion, sharp: &[bool]) -> f64 {
     away.flat_map(|triangle| angles(triangle.map(|node| region.points[node]))).fold(f64::INFINITY, f64::min)
 }
 
-/// Meshes the region inside the chains. Nodes that the mesh needs on the boundary are added to the chains, and all that were
-/// made to `made`.
+/// Meshes the region inside the chains. Nodes that the mesh needs on the boundary are added to the chains. `made` grows by the
+/// number of nodes made, and by a share of the square of the number of edges.
 fn meshed(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
@@ -385,7 +386,7 @@ fn divide(
     }
 }
 
-/// Smooths the inner nodes of a region, and keeps what is not worse than before.
+/// Smooths the inner nodes of a region as long as its smallest angle does not become worse, or stays above 30°.
 fn smoothed(mut region: MeshRegion, fixed: usize, edges: &[[usize; 2]]) -> Result<MeshRegion> {
     for _ in 0..SMOOTHINGS {
         let mut points = region.points.clone();

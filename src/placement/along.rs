@@ -1,12 +1,12 @@
-//! Where the wheel lies in a frame of the rail that is moved to another point and turned.
+//! Finds where the wheel lies in a contact frame that is moved to another point of the rail and turned.
 
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector3};
 
 use crate::profile::Station;
 
-/// Gives how far a frame of the rail moves along η \[mm\], its skew χ, and its origin and direction in the wheel profile's axes. `origin`
-/// and `turn` are those of the new frame in the present one, of which the wheel's part is `frame`, its skew and the distance of the axle
-/// \[mm\].
+/// Moves a contact frame to `origin` \[mm\] of its midplane, turned by `turn`. Gives how far it moves along η \[mm\], the new skew χ
+/// \[rad\], and its origin and direction in the wheel profile's axes. The present frame is given by its isometry to the wheel profile's
+/// axes, its skew \[rad\] and the distance from the axle to its origin \[mm\].
 pub(super) fn wheel_along(
     (frame, skew, radius): (&Isometry2<f64>, f64, f64),
     origin: Point2<f64>,

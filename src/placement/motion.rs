@@ -27,9 +27,9 @@ pub enum Pitch {
 /// Rates of a wheelset, or of a wheel alone, besides its forward speed, against the track at rest; all 0 in pure rolling.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates {
-    /// Velocity of the axle's middle \[mm/s\], + to the right.
+    /// Lateral velocity of the axle's middle \[mm/s\], + to the right.
     pub lateral: f64,
-    /// Velocity of the axle's middle \[mm/s\], + up.
+    /// Vertical velocity of the axle's middle \[mm/s\], + up.
     pub vertical: f64,
     /// Rate of yaw \[rad/s\], + moves the right-hand wheel forward. A steady curve to the left of radius ρ has speed/ρ.
     pub yaw: f64,
@@ -82,24 +82,24 @@ impl Motion {
         Ok(Self { speed, rates })
     }
 
-    /// The forward speed \[mm/s\].
+    /// Gives the forward speed \[mm/s\].
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// The other rates.
+    /// Gives all rates other than the forward speed.
     pub fn rates(&self) -> &Rates {
         &self.rates
     }
 
-    /// The same motion seen in a mirror under x → −x: that of a left side described as a right one.
+    /// Gives the mirror image of the motion under x → −x: that of a left side described as a right one.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let Rates { lateral, yaw, roll, .. } = self.rates;
         Self { rates: Rates { lateral: -lateral, yaw: -yaw, roll: -roll, ..self.rates }, ..*self }
     }
 
-    /// The creepages of a placed pair, in its contact frame.
+    /// Computes the creepages of a placed pair, in its contact frame.
     ///
     /// `half` is the distance of the wheel profile's origin from the middle of the axle, along the axle \[mm\]; 0 for a wheel
     /// alone. `radius` is the rolling radius \[mm\] of [`Pitch::Rolling`]. Exact for rigid bodies, with no small angles
@@ -146,11 +146,11 @@ impl Motion {
 }
 
 impl Creepages {
-    /// The slip of the rail over the wheel at a point (ξ, η, ζ) of their surface \[mm\], over V: along η, and along the surface's
+    /// Computes the slip of the rail over the wheel at a point (ξ, η, ζ) of their surface \[mm\], over V: along η, and along the surface's
     /// tangent at the angle α, whose normal (−sin α, cos α) is given. At C it is the two creepages.
     ///
     /// Exact for rigid bodies: it holds the growth of the rolling radius and the turning of the normal, of which creepages and
-    /// spin are the linear part on the tangent plane. As there, the velocity of C along ζ does not enter.
+    /// spin are the linear part on the tangent plane. The velocity of C along ζ does not enter.
     pub fn slip_at(&self, point: [f64; 3], [n_xi, n_zeta]: [f64; 2]) -> [f64; 2] {
         let ([xi, eta, zeta], [w_xi, w_eta]) = (point, self.turn);
         let along_xi = self.lateral - w_eta * zeta + self.spin * eta;

@@ -15,7 +15,7 @@ use crate::profile::{Profile, ProfilePoint, Section, Side};
 #[derive(Debug, Clone)]
 pub struct Body {
     swept: Arc<Swept>,
-    /// The contact point C on it; its tangent gives θ_C.
+    /// The contact point C on the body; its tangent gives θ_C.
     pub(crate) point: ProfilePoint,
     /// The profile in the contact frame.
     pub(crate) section: Section,
@@ -48,7 +48,7 @@ pub struct Placement {
     skew: f64,
     /// Whether the frame's origin is C.
     at_contact: bool,
-    /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward; 0 on a rail.
+    /// Angle ν \[rad\] by which the common normal leans forward: on a roller, about its axle from the crown to C; on an extruded rail 0.
     turn: f64,
     /// The surface of a rail that varies along the track, or of a wheel that varies around its axle; its profile is then the section
     /// through C.
@@ -59,7 +59,7 @@ pub struct Placement {
     under: OnceLock<Option<Box<Placement>>>,
 }
 
-/// What is placed: a rail or a roller, and a wheel, with right-hand profiles prepared once. A clone shares them.
+/// A rail or a roller, and a wheel, with right-hand profiles that are prepared once; clones share them.
 #[derive(Debug, Clone)]
 pub struct Pair {
     rail: Arc<Swept>,
@@ -121,27 +121,27 @@ impl Pair {
         Ok(Self { rail: Arc::clone(&self.rail), wheel: Arc::new(wheel) })
     }
 
-    /// The profile of the rail or roller.
+    /// Gives the profile of the rail or roller.
     pub fn rail(&self) -> &Profile {
         &self.rail.profile
     }
 
-    /// The wheel profile.
+    /// Gives the wheel profile.
     pub fn wheel(&self) -> &Profile {
         &self.wheel.profile
     }
 
-    /// The outer surface of the rail and of the wheel, each in its own axes.
+    /// Gives the outer surface of the rail and of the wheel, each in its own axes.
     pub fn sections(&self) -> [&Section; 2] {
         [&self.rail.own_axes, &self.wheel.own_axes]
     }
 
-    /// R \[mm\].
+    /// Gives the nominal rolling radius R \[mm\].
     pub fn wheel_radius(&self) -> f64 {
         self.wheel.generator.radius()
     }
 
-    /// The distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
+    /// Gives the distance \[mm\] from a roller's axle to the origin of its profile; `None` for a rail.
     pub fn roller_radius(&self) -> Option<f64> {
         Some(self.rail.generator.radius()).filter(|radius| radius.is_finite())
     }
@@ -158,8 +158,8 @@ impl Pair {
     }
 
     /// Places the pair in contact along a given common tangent: abscissa \[mm\] and angle of ξ \[rad\] in the own axes of each
-    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C. The place of contact
-    /// of a search is placed by its own method `placed`.
+    /// body. At a kink the angle is not that of a tangent; s then has no second-order expansion at C. `search::Contact::placed`
+    /// places what a search found.
     ///
     /// # Errors
     /// An abscissa off its profile, or a skew that is not finite.
@@ -169,7 +169,7 @@ impl Pair {
         Placement::touching(rail, wheel, skew)
     }
 
-    /// This pair in the contact frames of another placed pair, so that s of both can be compared point by point.
+    /// Places this pair in the contact frames of another placed pair, so that s of both can be compared point by point.
     #[must_use]
     pub fn placed_like(&self, other: &Placement) -> Placement {
         let [rail, wheel] = [(&self.rail, &other.rail), (&self.wheel, &other.wheel)]
@@ -218,12 +218,12 @@ impl Body {
         Some(made)
     }
 
-    /// How the body is swept from its profile.
+    /// Tells how the body is swept from its profile.
     pub fn generator(&self) -> Generator {
         self.swept.generator
     }
 
-    /// Distance \[mm\] from the body's axle to C along its own z: R − z_C of a wheel, R + z_C of a roller; infinite for a rail.
+    /// Gives the distance \[mm\] from the body's axle to C along its own z: R − z_C of a wheel, R + z_C of a roller; infinite for a rail.
     pub fn axle_distance(&self) -> f64 {
         match self.swept.side {
             Side::Rail => self.generator().radius() + self.point.station.z,
@@ -231,22 +231,22 @@ impl Body {
         }
     }
 
-    /// The profile in its own axes.
+    /// Gives the profile in its own axes.
     pub fn profile(&self) -> &Profile {
         &self.swept.profile
     }
 
-    /// The contact point C on it; its tangent gives θ_C.
+    /// Gives the contact point C on the body; its tangent gives θ_C.
     pub fn point(&self) -> &ProfilePoint {
         &self.point
     }
 
-    /// The profile in the contact frame.
+    /// Gives the profile in the contact frame.
     pub fn section(&self) -> &Section {
         &self.section
     }
 
-    /// The contact frame in the profile's own axes (x, z): its translation is C \[mm\], its rotation θ_C.
+    /// Gives the contact frame in the profile's own axes (x, z): its translation is C \[mm\], its rotation θ_C.
     ///
     /// It takes a point (ξ, ζ) of the midplane to (x, z), eqs. (4.3), and its inverse (x, z) to (ξ, ζ), eqs. (4.2).
     /// `inverse_transform_point` subtracts C before it turns, so that points near C keep all digits of their distance from
@@ -257,12 +257,12 @@ impl Body {
         Isometry2::from_parts(Translation2::new(frame.x, frame.z), turn)
     }
 
-    /// Whether the contact frame's ξ is the tangent of the profile at C: not so at kinks and ends.
+    /// Tells whether the contact frame's ξ is the tangent of the profile at C: not so at kinks and ends.
     pub fn is_smooth(&self) -> bool {
         self.section.contact.is_some()
     }
 
-    /// θ_C \[rad\] of (4.12): the profile's angle at C, positive counter-clockwise from x to z.
+    /// Gives θ_C \[rad\] of (4.12): the profile's angle at C, positive counter-clockwise from x to z.
     pub fn contact_angle(&self) -> f64 {
         self.point.station.angle()
     }
@@ -285,41 +285,41 @@ impl Placement {
         Self { lofted: Some(lofted), ..self }
     }
 
-    /// The surface of the body that varies, a rail along the track or a wheel around its axle, in the contact frame; `None` where both
-    /// are swept.
+    /// Gives the surface of the body that varies, a rail along the track or a wheel around its axle, in the contact frame; `None` where
+    /// both are swept.
     pub fn lofted(&self) -> Option<&FramedLoft> {
         self.lofted.as_deref()
     }
 
-    /// That of a rail that varies along the track.
+    /// Gives the surface of a rail that varies along the track, in the contact frame; `None` for any other rail.
     pub fn lofted_rail(&self) -> Option<&FramedLoft> {
         self.lofted().filter(|lofted| lofted.side() == Side::Rail)
     }
 
-    /// That of a wheel that varies around its axle.
+    /// Gives the surface of a wheel that varies around its axle, in the contact frame; `None` for any other wheel.
     pub fn lofted_wheel(&self) -> Option<&FramedLoft> {
         self.lofted().filter(|lofted| lofted.side() == Side::Wheel)
     }
 
-    /// Says which body varies, as messages do; `None` where both are swept.
+    /// Names the body that varies, for messages; `None` where both are swept.
     pub fn varying(&self) -> Option<&'static str> {
         self.lofted().map(|lofted| LoftedBody::name(lofted.side()))
     }
 
-    /// Angle ν \[rad\] about a roller's axle from its crown to C, + forward: the contact frame's ζ leans forward by it. On a rail that
-    /// varies along the track that of the common normal; 0 on an extruded one.
+    /// Gives the angle ν \[rad\] by which the contact frame's ζ leans forward. On a roller it is the angle about its axle from the crown
+    /// to C; it is 0 on an extruded rail.
     pub fn turn(&self) -> f64 {
         self.turn
     }
 
-    /// Cosine of the angle between the common normal and the vertical: cosθ, cosθ cosν on a roller and on a rail that varies.
+    /// Gives the cosine of the angle between the common normal and the vertical: cosθ, cosθ cosν on a roller and on a rail that varies.
     pub fn upright(&self) -> f64 {
         self.rail.point.station.cos * self.turn.cos()
     }
 
-    /// A roller seen upside down: a wheel on a rail with the roller's own profile, touching at C without skew. Its separation is
-    /// how far the roller lies below its profile, so that s of a wheel on a roller is s on a rail plus s of this pair. The
-    /// frame's ξ and η are those of the contact, and its ζ is the other way. `None` for a rail.
+    /// Gives a roller seen upside down: a wheel on a rail with the roller's own profile, touching at C without skew. Its separation is
+    /// how far the roller lies below its extruded profile, so that s of a wheel on a roller is s on a rail plus s of this pair. The
+    /// frame's ξ and η are those of the contact, and its ζ is opposite. `None` for a rail.
     pub fn under(&self) -> Option<&Self> {
         let made = || {
             let [rail, wheel] = self.rail.upside_down()?;
@@ -330,38 +330,38 @@ impl Placement {
         self.under.get_or_init(made).as_deref()
     }
 
-    /// The lower body: a rail or a roller.
+    /// Gives the lower body: a rail or a roller.
     pub fn rail(&self) -> &Body {
         &self.rail
     }
 
-    /// The upper body: a wheel.
+    /// Gives the upper body: a wheel.
     pub fn wheel(&self) -> &Body {
         &self.wheel
     }
 
-    /// The pair that is placed; it shares the profiles.
+    /// Gives the pair that is placed; it shares the profiles.
     pub fn pair(&self) -> Pair {
         let [rail, wheel] = [&self.rail, &self.wheel].map(|body| Arc::clone(&body.swept));
         Pair { rail, wheel }
     }
 
-    /// R \[mm\], the nominal rolling radius: distance from the axle to the wheel profile's origin.
+    /// Gives the nominal rolling radius R \[mm\]: the distance from the axle to the wheel profile's origin.
     pub fn wheel_radius(&self) -> f64 {
         self.wheel.generator().radius()
     }
 
-    /// χ \[rad\], the skew: 0 without yaw, + turns the wheel from ξ to η.
+    /// Gives the skew χ \[rad\]: 0 without yaw, + turns the wheel from ξ to η.
     pub fn skew(&self) -> f64 {
         self.skew
     }
 
-    /// The rotation by χ in the tangent plane: it takes the wheel's own (ξ′, η′) to (ξ, η).
+    /// Gives the rotation by χ in the tangent plane: it takes the wheel's own (ξ′, η′) to (ξ, η).
     pub fn skew_rotation(&self) -> UnitComplex<f64> {
         UnitComplex::new(self.skew)
     }
 
-    /// The same contact with another skew χ \[rad\].
+    /// Gives this contact with another skew χ \[rad\].
     ///
     /// # Errors
     /// A skew that is not finite.
@@ -369,18 +369,18 @@ impl Placement {
         Ok(Self { skew: finite("contact: skew", skew)?, ..self.clone() })
     }
 
-    /// The same contact with χ = 0.
+    /// Gives this contact with χ = 0.
     #[must_use]
     pub fn without_skew(&self) -> Self {
         Self { skew: 0.0, ..self.clone() }
     }
 
-    /// The same bodies in another frame: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\] in the rail profile's
-    /// axes. The wheel does not move, so that s at the new origin is what it was there, along the new ζ; neither body is
-    /// smooth in the sense of [`Body::is_smooth`].
+    /// Gives the same bodies in another frame: its origin lies on the rail at `rail_x` \[mm\], its ξ at `angle` \[rad\] in the rail
+    /// profile's axes. The wheel does not move, so that s is what it was, but measured along the new ζ; neither body is smooth in the
+    /// sense of [`Body::is_smooth`].
     ///
-    /// Under a skewed wheel the new ζ lies in a plane through the axle, as it has to, once the origin moves along the rail by
-    /// what [`Self::ahead`] tells; the skew changes as well.
+    /// The new ζ has to lie in a plane through the axle. So under a skewed wheel the origin also moves along the rail, by
+    /// [`Self::ahead`], and the skew changes.
     ///
     /// # Errors
     /// An abscissa off the rail; a skewed wheel over a roller, on which nothing moves along a straight line; a body that varies.
@@ -410,29 +410,29 @@ impl Placement {
         Ok(Self { rail, wheel, skew, ahead, at_contact: false, under: OnceLock::new(), ..self.clone() })
     }
 
-    /// How far \[mm\] the frame's origin lies ahead of the contact point C along η: 0 but in a frame by [`Self::reframed`] under a
-    /// skewed wheel.
+    /// Gives how far \[mm\] the frame's origin lies ahead of the contact point C along η: 0 except in a frame by [`Self::reframed`] under
+    /// a skewed wheel.
     pub fn ahead(&self) -> f64 {
         self.ahead
     }
 
-    /// Whether the frame's origin is the contact point C: not so in a frame by [`Self::reframed`].
+    /// Tells whether the frame's origin is the contact point C: not so in a frame by [`Self::reframed`].
     pub fn is_at_contact(&self) -> bool {
         self.at_contact
     }
 
-    /// R − z_C \[mm\]: distance from the axle to C.
+    /// Gives the rolling radius R − z_C \[mm\]: the distance from the wheel's axle to C.
     pub fn rolling_radius(&self) -> f64 {
         self.wheel.axle_distance()
     }
 
-    /// The ξ where both bodies have a surface in the midplane, outermost ends.
+    /// Gives the range of ξ, up to the outermost ends, where both bodies have a surface in the midplane; `None` if there is none.
     pub fn overlap(&self) -> Option<Interval> {
         let both = self.rail.section.reach()?.cut(self.wheel.section.reach()?);
         (both.has_width()).then_some(both)
     }
 
-    /// All ξ inside (a, b) where either body changes its branch, ascending.
+    /// Lists all ξ inside (a, b) where either body changes its branch, ascending.
     pub fn joints(&self, a: f64, b: f64) -> Vec<f64> {
         let ends = |section: &Section| section.pieces.iter().flat_map(|p| p.xi.ends()).collect::<Vec<_>>();
         let mut all = ends(&self.rail.section);

@@ -35,7 +35,7 @@ pub(super) struct Swept {
     pub own_axes: Section,
     pub side: Side,
     pub generator: Generator,
-    /// A roller as a wheel, and its profile as a rail, both upside down; made once.
+    /// A roller's profile as a rail, and the roller as a wheel, both upside down; made once.
     upside_down: OnceLock<[Arc<Swept>; 2]>,
 }
 
@@ -45,8 +45,8 @@ impl Swept {
         Self { profile, own_axes, side, generator: Generator::Extruded, upside_down: OnceLock::new() }
     }
 
-    /// Returns the wheel and the rail of [`Body::upside_down`]. Both have the outer surface of the roller's profile, which is that of
-    /// a wheel when it is upside down.
+    /// Returns a roller's profile as an extruded rail, and the roller as a wheel, both upside down. The outer surface of both is that of a
+    /// wheel.
     pub fn upside_down(&self) -> &[Arc<Self>; 2] {
         self.upside_down.get_or_init(|| {
             let rail = Self::extruded(self.profile.upside_down(), Side::Wheel);

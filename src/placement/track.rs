@@ -60,12 +60,12 @@ pub struct Wheelset {
 }
 
 impl Track {
-    /// The track of a right-hand rail profile as placed (inclined), and its mirror image. Top of rail and gauge are those
+    /// Makes the track of a right-hand rail profile as placed (inclined), and its mirror image. Top of rail and gauge are those
     /// of the head that wheels run on: of a grooved rail the one at the field side, not the keeper.
     ///
     /// # Errors
-    /// Distances that are not positive; a gauge height within which the head has no inner face: a profile that ends
-    /// above it and is not vertical there.
+    /// A profile without a rail head; distances that are not positive, a negative gauge height; a gauge height within which the head has
+    /// no inner face: a profile that ends above it and is not vertical there.
     pub fn new(rail: &Profile, distance: RailDistance) -> Result<Self> {
         let head = RunningHead::of(rail);
         let top = head.highest();
@@ -86,8 +86,8 @@ impl Track {
         Ok(Self { rail_x, rail_z: -top })
     }
 
-    /// A track whose rails have their profile origins this far apart \[mm\], and on the level from which heights count. A rail that
-    /// varies along the track has no top of its own.
+    /// Makes the track of rails that vary along the track, which have no top of their own: their profile origins lie this far apart
+    /// \[mm\], at height 0.
     ///
     /// # Errors
     /// A distance that is not positive.
@@ -130,7 +130,7 @@ impl Track {
 }
 
 impl Wheelset {
-    /// A wheelset of two equal wheels.
+    /// Makes a wheelset of two equal wheels.
     ///
     /// # Errors
     /// Distances or a radius that are not positive numbers.
@@ -164,7 +164,7 @@ fn positive(place: &str, value: f64) -> Result<f64> {
     Err(Error::new(place, value.to_string(), "a positive number", "give it in mm"))
 }
 
-/// Distance \[mm\] of the marks that tell a groove, some 40 mm wide, from a head.
+/// Distance \[mm\] of the marks by which a groove, some 40 mm wide, is told from a head.
 const GROOVE_MARKS: f64 = 1.0;
 
 /// The head that wheels run on.
@@ -182,19 +182,19 @@ impl RunningHead {
         Self { section: Section::own_axes(rail, Side::Rail), from }
     }
 
-    /// Branches with the intervals on which they are the head's surface, in order of x.
+    /// Lists the branches with the intervals on which they are the head's surface, in order of x.
     fn stretches(&self) -> impl Iterator<Item = (&Branch, Interval)> {
         let seen = Interval { low: self.from, ..Interval::ALL };
         let inside = self.section.pieces.iter().filter(move |piece| piece.xi.high > seen.low);
         inside.map(move |piece| (&self.section.branches[piece.branch], piece.xi.cut(seen)))
     }
 
-    /// Greatest height.
+    /// Finds the greatest height \[mm\].
     fn highest(&self) -> f64 {
         self.stretches().map(|(branch, xi)| summit(branch, xi)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Least abscissa where the head is at least `level` high.
+    /// Finds the least abscissa where the head is at least `level` high \[mm\].
     fn innermost(&self, level: f64) -> Option<f64> {
         self.stretches().find_map(|(branch, xi)| first_at_level(branch, xi, level))
     }
@@ -207,7 +207,7 @@ fn turns(branch: &Branch, xi: Interval) -> Vec<f64> {
     [xi.low].into_iter().chain(level).chain([xi.high]).collect()
 }
 
-/// Greatest height of a branch over an interval.
+/// Finds the greatest height of a branch over an interval \[mm\].
 fn summit(branch: &Branch, xi: Interval) -> f64 {
     turns(branch, xi).into_iter().map(|x| branch.height(x)).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -216,7 +216,7 @@ fn summit(branch: &Branch, xi: Interval) -> f64 {
 /// this is off by 0.1 µm.
 const VERTICAL: f64 = 1e-6;
 
-/// Abscissa \[mm\] of the innermost point of the head within `height` of its top.
+/// Finds the abscissa of the innermost point of the head within `height` of its top \[mm\].
 fn gauge_face(rail: &Profile, head: &RunningHead, top: f64, height: f64) -> Result<f64> {
     // Where the profile ends above the level, the head goes on unseen, further in unless it is vertical there.
     let end = rail.segments().first().map(Segment::start).filter(|end| end.x >= head.from);
@@ -239,7 +239,7 @@ fn gauge_face(rail: &Profile, head: &RunningHead, top: f64, height: f64) -> Resu
     ))
 }
 
-/// Least abscissa of an interval where a branch is at least `level` high.
+/// Finds the least abscissa of an interval where a branch is at least `level` high \[mm\].
 fn first_at_level(branch: &Branch, xi: Interval, level: f64) -> Option<f64> {
     let turns = turns(branch, xi);
     let above = |x: f64| branch.height(x) - level;

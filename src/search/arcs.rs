@@ -1,5 +1,5 @@
-//! Solves pairs of arcs, lines and fans whose common tangent has a closed form: all pairs but those with a
-//! yawed torus.
+//! Solves pairs of arcs, lines and fans whose common tangent has a closed form: all except a yawed arc or fan over
+//! an arc or fan.
 
 use super::candidates::{Foot, Search};
 use super::element::{ArcElement, Element, ElementCurve, SINE_ROUNDING, between};
@@ -39,7 +39,7 @@ struct Seen {
     centre: f64,
 }
 
-/// Returns the part of an arc or fan that is seen; `None` if it has no outline.
+/// Returns the part of an arc or fan that has an outline; `None` if there is none.
 ///
 /// An arc with its hollow side down has an outline only where ϱ_c < 0; elsewhere the rings beside it hide it.
 fn seen(attitude: &Attitude, arc: &ArcElement, element: &Element) -> Option<Seen> {

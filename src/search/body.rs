@@ -64,7 +64,8 @@ impl SearchBody {
         Self::with_arcs_up_to(f64::INFINITY, section, extent, side)
     }
 
-    /// Prepares the same with arcs and stretches cut to `longest` \[mm\] or less in x, so that the bounds of each are narrow.
+    /// Prepares the part of a profile that faces the other body, with arcs, lines and polynomials cut to `longest` \[mm\] or less in x, so
+    /// that the bounds of each are narrow. `None` if no part faces the other body.
     pub fn with_arcs_up_to(longest: f64, section: &Section, extent: f64, side: Side) -> Option<Self> {
         let rounding = BOUND_ROUNDINGS * f64::EPSILON * extent;
         let mut builder = TreeBuilder {

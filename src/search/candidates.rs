@@ -34,7 +34,8 @@ pub(super) struct Candidate {
     pub meeting: Meeting,
 }
 
-/// An element of the wheel and one of the rail, with a parameter on each.
+/// An element of the wheel and one of the rail, with a parameter on each. Where a body varies: 0 and the index of its strip, with the
+/// parameters u and y \[mm\] on the strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
     /// Indices of the wheel's and the rail's element.

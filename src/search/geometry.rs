@@ -10,7 +10,7 @@ use crate::numerics::interval::Interval;
 use crate::placement::Pair;
 use crate::profile::trace;
 
-/// Amplitude \[mm\] at which the equivalent conicity is named.
+/// Amplitude \[mm\] at which the equivalent conicity is stated.
 pub const AMPLITUDE: f64 = 3.0;
 
 /// Amplitudes \[mm\] between which the nonlinearity parameter is a slope.
@@ -21,7 +21,7 @@ const STEP: f64 = 0.1;
 
 /// Depth below the top of rail at which the gauge TG is measured \[mm\].
 const GAUGE_DEPTH: f64 = 14.0;
-/// Height over the running circle at which the distance SR of the active faces is measured \[mm\].
+/// Depth below the running circle at which the distance SR of the active faces is measured \[mm\].
 const FACE_HEIGHT: f64 = 10.0;
 /// Distance of the marks \[mm\] between which the active face is found: chords of a 13 mm flange root are within 0.03 µm of it.
 const FACE_MARKS: f64 = 0.05;
@@ -31,8 +31,8 @@ const FACE_MARKS: f64 = 0.05;
 pub struct GeometryAt {
     /// Lateral displacement y \[mm\], + to the right.
     pub lateral: f64,
-    /// Roll \[rad\], + lowers the right-hand wheel. Where it is neglected it is that of the height difference at which the two sides
-    /// touch, over the distance of their contacts.
+    /// Roll \[rad\], + lowers the right-hand wheel. Where it is neglected: the difference of the heights at which the two sides touch,
+    /// over the distance of their contacts.
     pub roll: f64,
     /// Rolling radius difference Δr, right less left \[mm\].
     pub delta_r: f64,
@@ -62,7 +62,7 @@ impl GeometryAt {
         }
     }
 
-    /// Returns the same at the opposite displacement, where both sides are alike.
+    /// Returns the geometry at the opposite displacement of a wheelset whose sides are alike.
     fn mirrored(&self) -> Self {
         let [left, right] = self.contacts;
         Self {
@@ -196,14 +196,14 @@ pub fn gauge(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> {
     sides.map(|(side, pair)| side.track().half_gauge(pair.rail(), GAUGE_DEPTH).ok()).sum()
 }
 
-/// Returns the distance SR \[mm\] of the wheels' active faces, 10 mm outside of the running circles; `pairs` are those of the left
+/// Returns the distance SR \[mm\] of the wheels' active faces, 10 mm below the running circles; `pairs` are those of the left
 /// and the right side. `None` if a wheel's profile ends before that. The clearance of a centred wheelset is TG − SR.
 pub fn active_faces(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> {
     let sides = [system.left(), system.right()].into_iter().zip(pairs);
     sides.map(|(side, pair)| Some(side.wheelset().wheel_x() + active_face(pair)?)).sum()
 }
 
-/// Returns x of the flange's face on the wheel profile \[mm\], 10 mm outside of the running circle: the place nearest to the tread.
+/// Returns x of the flange's face on the wheel profile \[mm\], 10 mm below the running circle: the place nearest to the tread.
 fn active_face(pair: &Pair) -> Option<f64> {
     let marks = trace(pair.wheel(), FACE_MARKS);
     let crossing = |ends: &[crate::profile::Mark]| {

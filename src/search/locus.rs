@@ -31,7 +31,8 @@ use crate::profile::Station;
 pub(super) struct Attitude {
     /// Abscissa of the wheel's profile origin in the rail's axes \[mm\].
     pub offset: f64,
-    /// Ordinate y of the wheel's profile origin \[mm\]. It counts on a roller, whose crown is at y = 0.
+    /// Ordinate y of the wheel's profile origin from the middle of the axle \[mm\]. It counts where a body varies, and on a roller, whose
+    /// crown is at y = 0.
     pub along: f64,
     /// Nominal rolling radius R \[mm\].
     pub radius: f64,
@@ -52,7 +53,7 @@ pub(super) struct Attitude {
 }
 
 impl Attitude {
-    /// Calculates the attitude of a pose.
+    /// Calculates the attitude of a pose, with `along` at 0.
     pub fn new(offset: f64, yaw: f64, roll: f64, radius: f64) -> Self {
         Self::of_directions(offset, yaw.sin_cos().into(), roll.sin_cos().into(), radius)
     }
@@ -116,14 +117,14 @@ impl Attitude {
         (sine, ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt())
     }
 
-    /// Returns the sine of the outline's tangent in the rail's axes for a sine of the profile's tangent; ∓1
-    /// where the outline's tangent is beyond the vertical.
+    /// Returns the sine of the outline's tangent in the rail's axes for a sine of the profile's tangent; −1 or
+    /// 1, by its sign, where the outline's tangent is beyond the vertical.
     #[inline]
     pub fn outline_sine(&self, profile_sine: f64) -> f64 {
         self.rolled_sine((profile_sine / self.cos_yaw).clamp(-1.0, 1.0))
     }
 
-    /// Returns the sine of a tangent after the roll; ∓1 beyond the vertical.
+    /// Returns the sine of a tangent after the roll; −1 or 1, by the sign of `sin`, beyond the vertical.
     #[inline]
     pub fn rolled_sine(&self, sin: f64) -> f64 {
         let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();

@@ -55,13 +55,13 @@ pub enum EventKind {
     Transfer,
     /// A second place comes within the reach of near misses.
     SecondBegins,
-    /// It leaves that reach.
+    /// The second place leaves the reach of near misses.
     SecondEnds,
     /// The second place is nearest to touching since it came within reach.
     LeastClearance,
-    /// The wheelset stands on its rails again.
+    /// The wheelset is on its rails again.
     Begins,
-    /// A wheel has no rail any more.
+    /// The wheelset leaves its rails: under one wheel or both there is none.
     Ends,
 }
 
@@ -70,14 +70,14 @@ pub enum EventKind {
 pub struct Event {
     /// What happens.
     pub kind: EventKind,
-    /// To which wheel.
+    /// Side of the wheel to which it happens.
     pub side: TrackSide,
-    /// Where \[mm\], or at which pitch \[rad\], refined to 0.01 mm on the track or around the wheel; least clearances to the step of the
-    /// march.
+    /// Place along the track \[mm\], or pitch \[rad\], refined to 0.01 mm on the track or around the wheel; a least clearance is known to
+    /// the step of the march.
     pub along: f64,
     /// The lowest contact before; `None` where there is none.
     pub before: Option<Contact>,
-    /// The lowest contact after.
+    /// The lowest contact after; of a least clearance, the second place. `None` where there is none.
     pub after: Option<Contact>,
     /// Vertical gap of the second place \[mm\], where one is within reach.
     pub gap: Option<f64>,
@@ -87,7 +87,7 @@ pub struct Event {
 }
 
 impl EventKind {
-    /// Its name in tables.
+    /// Gives its name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Transfer => "transfer",
@@ -101,13 +101,13 @@ impl EventKind {
 }
 
 impl Event {
-    /// Change of the rolling radius \[mm\]; NaN without a contact before and after.
+    /// Gives the change of the rolling radius \[mm\]; NaN without a contact before and after.
     pub fn radius_jump(&self) -> f64 {
         self.both(|contact| contact.rolling_radius)
     }
 
-    /// Change of the angle of the wheel's path \[rad\], + where it turns up and the wheel strikes; NaN without a contact before and
-    /// after.
+    /// Gives the change of the angle of the wheel's path \[rad\], + where it turns up and the wheel strikes; NaN without a contact before
+    /// and after.
     pub fn impact_angle(&self) -> f64 {
         self.slopes[1].atan() - self.slopes[0].atan()
     }
@@ -118,7 +118,7 @@ impl Event {
 }
 
 impl Stop {
-    /// The contacts of a side, the lowest first.
+    /// Lists the contacts of a side, the lowest first.
     pub fn of(&self, side: TrackSide) -> impl Iterator<Item = &Contact> {
         self.rows.iter().filter(move |row| row.side == side).map(|row| &row.contact)
     }
@@ -126,7 +126,7 @@ impl Stop {
 
 const SIDES: [TrackSide; 2] = [TrackSide::Left, TrackSide::Right];
 
-/// Tells whether two lowest contacts are places that the wheel does not roll between.
+/// Tells whether two lowest contacts are too far apart for the wheel to roll from one to the other.
 fn far(a: &Contact, b: &Contact) -> bool {
     [a.rail_x - b.rail_x, a.wheel_x - b.wheel_x, a.y - b.y].iter().any(|apart| apart.abs() > ONE_CONTACT)
 }
@@ -139,8 +139,8 @@ struct Way<'a> {
 }
 
 impl March {
-    /// Hands the stops at ascending places \[mm\] to `sink`, block by block, each with the events since the one before; as long as it
-    /// wants more.
+    /// Hands the stops at ascending places \[mm\] to `sink`, block by block, each with the events since the block before, as long as
+    /// `sink` returns true.
     ///
     /// It runs on the threads of the current rayon pool; any number of threads gives the same bits. Cost: about 1 ms for a stop, and some
     /// ten more stops for an event.
@@ -152,8 +152,8 @@ impl March {
         Way { march: self, course: Course::Track }.blocks(along, sink)
     }
 
-    /// Hands the stops at ascending pitches \[rad\] to `sink` likewise: the wheelset turns about its axle, and the part of a wheel that
-    /// lies at −pitch is lowest. A whole turn later all is the same.
+    /// Hands the stops at ascending pitches \[rad\] to `sink`, as [`Self::blocks`] does: the wheelset turns about its axle, and the part
+    /// of a wheel that lies at −pitch is lowest. Everything repeats after a whole turn.
     ///
     /// # Errors
     /// Wheels of one profile each, rails that vary; pitches that do not ascend; the other errors of [`Self::blocks`].
@@ -190,7 +190,7 @@ impl<'a> Way<'a> {
             let found = format!("{} {unit} after {} {unit}", pair[1], pair[0]);
             return Err(Error::new(name, found, "ascending places", "sort them"));
         }
-        // The first place in order, whatever thread would come upon one first.
+        // Before the threads begin, so that the error is that of the first such place.
         places.iter().try_for_each(|&at| self.reaches(at))?;
         let mut last: Option<Stop> = None;
         let mut clearance = [None; 2];
@@ -356,15 +356,15 @@ impl<'a> Way<'a> {
     }
 }
 
-/// Slope of the axle's path as a wheel turns forward at the bottom by its circumference: what lies ahead of the place where a round wheel
-/// would touch comes up, and lets the axle down.
+/// Gives the slope of the axle's path per length by which a wheel turns, forward at the bottom: a contact ahead of the place where a round
+/// wheel would touch moves up with the wheel, and the axle comes down.
 fn slope_of_turning(contact: &Contact, yaw: f64) -> f64 {
     let round = yaw.sin() * (contact.wheel_x - contact.rolling_radius * contact.wheel_angle.tan());
     0.0 - (contact.y - round) / contact.rolling_radius
 }
 
 impl Course {
-    /// Name and unit of its places.
+    /// Gives name and unit of its places.
     fn name(self) -> (&'static str, &'static str) {
         match self {
             Self::Track => ("along", "mm"),

@@ -7,8 +7,8 @@
 //! rail, z up. For the right-hand wheel they are the track's directions. The left-hand side is solved as its
 //! mirror image (x → −x), with lateral displacement, yaw and roll reversed; its axes are then left-handed.
 //!
-//! The wheel is turned by A = R_y(roll) · R_z(yaw) ([`wheel_rotation`]): first the yaw about z, then the roll about the *unyawed* y axis of
-//! the track, both by the right-hand rule. So the axle, from flange to field side, points along
+//! The wheel is turned by A = R_y(roll) · R_z(yaw) ([`wheel_rotation`]): first the yaw about z, then the roll about the *unyawed* y axis
+//! of the track, both by the right-hand rule. So with the yaw ψ and the roll φ the axle, from flange to field side, points along
 //! (cosψ cosφ, sinψ, −cosψ sinφ).
 //! A single wheel ([`Pose`]) is turned about its **profile origin**, the lowest point of the nominal running circle:
 //! `offset` is where that origin lies, whatever the angles. A wheelset ([`WheelsetOnTrack`]) is turned about the middle of
@@ -22,7 +22,8 @@
 //! that only pairs of elements that may be lowest are solved (`walk`). Arcs and lines have closed forms
 //! (`arcs`); polynomials and yawed arcs are solved by bounds of their curvatures and Newton's method
 //! (`stretches`). So the lowest contact cannot be missed. Over a roller a search in one of its meridian planes bounds all gaps,
-//! and each place of contact is followed to a plane of its own (`roller`).
+//! and each place of contact is followed to a plane of its own (`roller`). Where a body varies, parts of its surface are bounded
+//! instead (`lofted`).
 //!
 //! Only the part of each profile that faces the other body in its own axes counts
 //! ([`Section`](crate::profile::Section)): a part of a wheel that faces down only because of the roll (a

@@ -24,11 +24,11 @@ pub(super) struct SearchPair {
 pub(super) struct RailSearch<'a> {
     pub pair: &'a SearchPair,
     walk: Walk,
-    /// What the last search has left.
+    /// The candidates that the last search has left.
     pub candidates: Vec<Candidate>,
     /// The contact of the last search.
     last: Option<Meeting>,
-    /// What the searches have done.
+    /// Work of the searches so far.
     pub work: Work,
 }
 
@@ -93,9 +93,9 @@ impl SearchPair {
         Search { bodies, attitude, extent, within, lowest: f64::INFINITY, candidates, solves: 0, slack }
     }
 
-    /// Returns the gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]. A
-    /// larger gap is no touch of the two profiles, but of a yawed wheel's rings towards the axle. Slopes
-    /// below 45° may rise above their profile by their own ring.
+    /// Returns the gap of the highest point of the wheel's profile over the lowest of the rail \[mm\]. With a
+    /// larger gap the profiles do not touch, only rings of a yawed wheel towards its axle. Slopes up to 45° may
+    /// rise above their profile by their own ring.
     pub fn highest(&self, attitude: &Attitude) -> f64 {
         let [x, z] = self.wheel.extent;
         let tilted = (-x.low * attitude.sin_roll).max(-x.high * attitude.sin_roll);

@@ -14,7 +14,7 @@ const BLOCK: usize = 8192;
 /// Positions that one thread takes at a time.
 const CHUNK: usize = 256;
 
-/// What is swept over.
+/// A sweep over many positions, run on all threads.
 #[derive(Debug, Clone, Copy)]
 pub struct ParallelSweep<'a> {
     /// The wheelset on its track.
@@ -28,8 +28,8 @@ pub struct ParallelSweep<'a> {
 }
 
 impl ParallelSweep<'_> {
-    /// Hands the contacts of all positions to `sink`, block by block in the order of the positions, as long as it wants
-    /// more. `make` turns one position into what a block holds: it gets the number of the position from 0, its rows, and
+    /// Hands the contacts of all positions to `sink`, block by block in the order of the positions, as long as it returns
+    /// true. `make` turns one position into what a block holds: it gets the number of the position from 0, its rows, and
     /// what it has made of the positions before it in the same chunk. `sink` gets the number of positions done, and the
     /// chunks.
     ///
@@ -81,8 +81,8 @@ pub fn free(positions: &[Position]) -> impl Iterator<Item = &Position> {
     positions.iter().filter(|position| !matches!(position.roll, Roll::Fixed(_)))
 }
 
-/// Tabulates the equivalent conicity up to the largest amplitude of the positions whose roll is not given, all of which
-/// have to find it in one way, solved or neglected. `None` where no such position is off the centre. `progress` is told
+/// Tabulates the equivalent conicity up to the largest amplitude of the positions whose roll is not given: all of them
+/// have to solve it, or all to neglect it. `None` where no such position is off the centre. `progress` is told
 /// the number of searches done and the most there will be.
 ///
 /// # Errors

@@ -27,8 +27,8 @@ pub struct Position {
 }
 
 impl Position {
-    /// The rotation of the wheelset about the middle of its axle in track axes at a roll \[rad\], which may be the one that a
-    /// search solved for: see [`wheel_rotation`].
+    /// Gives the rotation of the wheelset about the middle of its axle, in track axes, at a given or solved roll \[rad\]: see
+    /// [`wheel_rotation`].
     pub fn rotation(&self, roll: f64) -> Rotation3<f64> {
         wheel_rotation(self.yaw, roll)
     }

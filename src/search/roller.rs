@@ -1,8 +1,8 @@
 //! First touch of a wheel on a roller: a body of revolution below, whose axle lies at y = 0, parallel to x.
 //!
 //! At a contact the common normal lies in the roller's meridian plane, which stands at an angle ν ahead of the crown. An
-//! observer who turns by ν about the roller's axle sees a rail there: the roller's profile, extruded along the tangent. To him
-//! the wheel, a body of revolution, has another yaw, roll and place ([`Meridian`]), and the search over a rail finds where the two
+//! observer who turns by ν about the roller's axle sees a rail there: the roller's profile, extruded along the tangent. To this
+//! observer the wheel, a body of revolution, has another yaw, roll and place ([`Meridian`]), and the search over a rail finds where the two
 //! outlines meet. The place is a contact of the roller if it lies in the observer's own plane: y′ = 0. So ν is a root, one for every
 //! place of contact.
 //!
@@ -17,14 +17,14 @@ use crate::numerics::interval::Interval;
 /// Most steps to the ν of a place. Each gains a digit or more; halving alone takes some 60.
 const STEPS: usize = 80;
 
-/// Passes after which ν is kept. The next pass then reaches as far as the bounds ask for.
+/// Number of passes after each of which ν moves to that of the best place. Then ν is kept, and a pass reaches as far as the bounds ask for.
 const FREE_PASSES: usize = 2;
 
 /// Most passes over all pairs: the free ones, one that finds how far the places reach, one that covers them.
 const PASSES: usize = FREE_PASSES + 2;
 
-/// Height \[mm\] above the lowest place in which a place is looked for that has left its elements: near misses beyond it are of
-/// no interest.
+/// Height \[mm\] above the lowest place up to which a place that has left its elements is searched: near misses beyond it are of no
+/// interest.
 const FOLLOWED_REACH: f64 = 2.0;
 
 /// A wheel as an observer sees it who has turned by ν about the roller's axle, + forward.
@@ -34,7 +34,7 @@ pub(super) struct Meridian {
     pub attitude: Attitude,
     /// Height of the wheel's profile origin over that of the rail if both are level without the turn \[mm\].
     level: f64,
-    /// Distance \[mm\] from the roller's axle up to the middle of the wheel, then.
+    /// Distance \[mm\] from the roller's axle up to the wheel's, if both profile origins are level without the turn.
     up: f64,
     /// sin ν.
     sin: f64,

@@ -30,7 +30,7 @@ impl SideOnTrack {
         Ok(Self { pair: SidePair::Swept(Arc::new(ProfilePair::new(pair)?)), track, wheelset })
     }
 
-    /// Takes a rail that varies along the track, or a wheel that varies around its axle, with the other body.
+    /// Makes the side of a pair in which the rail varies along the track, or the wheel around its axle.
     pub fn lofted(pair: Arc<LoftedPair>, track: Track, wheelset: Wheelset) -> Self {
         Self { pair: SidePair::Lofted(pair), track, wheelset }
     }
@@ -46,9 +46,9 @@ impl SideOnTrack {
     }
 
     /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin, as
-    /// [`Contact::y`](super::Contact::y) counts. That origin is at `along` \[mm\] of a rail's list
-    /// ([`WheelsetOnTrack::along`](super::WheelsetOnTrack::along)); of a wheel −pitch \[rad\] is lowest, and `yaw` \[rad\] turns it with the
-    /// field side ahead. `None` of bodies of one profile; no pieces where the plane meets no surface.
+    /// [`Contact::y`](super::Contact::y) counts. `stands` are \[along, pitch\]: that origin is at `along` \[mm\] of a rail's list
+    /// ([`WheelsetOnTrack::along`](super::WheelsetOnTrack::along)), and −pitch \[rad\] of a wheel is lowest. `yaw` \[rad\] turns the wheel,
+    /// + with the field side ahead. `None` for bodies of one profile; no pieces where the plane meets no surface.
     pub fn cut(&self, stands: [f64; 2], yaw: f64, ahead: f64) -> Option<Cut> {
         match &self.pair {
             SidePair::Swept(_) => None,
@@ -66,7 +66,7 @@ pub(super) enum SidePair {
     Lofted(Arc<LoftedPair>),
 }
 
-/// The search over one of them.
+/// The search over a wheel and what it runs on.
 #[derive(Debug, Clone)]
 pub(super) enum SideSearch<'a> {
     Swept(Box<ContactSearch<'a>>),
@@ -81,7 +81,7 @@ impl SidePair {
         }
     }
 
-    /// Whether the wheel varies around its axle.
+    /// Tells whether the wheel varies around its axle.
     pub fn turning(&self) -> bool {
         match self {
             Self::Swept(_) => false,
@@ -89,7 +89,7 @@ impl SidePair {
         }
     }
 
-    /// Radius of a roller \[mm\].
+    /// Gives the radius of a roller \[mm\]; `None` for a rail.
     pub fn roller(&self) -> Option<f64> {
         match self {
             Self::Swept(pair) => pair.roller(),
@@ -99,15 +99,15 @@ impl SidePair {
 }
 
 impl SideSearch<'_> {
-    /// Moves the axle's middle to a place along the track \[mm\] and turns the wheel about it \[rad\], + forward at the bottom; of no
-    /// meaning for bodies of one profile.
+    /// Moves the axle's middle to a place along the track \[mm\] and turns the wheel about its axle \[rad\], + forward at the bottom;
+    /// without effect on bodies of one profile.
     pub fn stand_at(&mut self, along: f64, pitch: f64) {
         if let Self::Lofted(search) = self {
             search.stand_at(along, pitch);
         }
     }
 
-    /// Says that a search ended without an answer since this was asked last.
+    /// Gives the error of a search that ended without an answer since the last call; `None` if all had one.
     pub fn gave_up(&mut self) -> Option<Error> {
         match self {
             Self::Swept(_) => None,

@@ -73,15 +73,13 @@ struct StretchPair<'s, 'a> {
 enum Verdict {
     /// There is no common tangent that counts.
     Nothing,
-    /// There is one least gap at most; its abscissa would be near this \[mm\].
+    /// There is at most one least gap; its abscissa is near this \[mm\].
     OneNear(f64),
     /// The bounds exclude nothing.
     Open,
 }
 
-/// Looks for contact of two elements.
-///
-/// `placed` holds the bounds of the whole outline of the wheel's element, if they are known.
+/// Looks for contact of two elements. `placed` holds the bounds of the whole outline of the wheel's element, if they are known.
 pub(super) fn meet(search: &mut Search, elements: [u32; 2], placed: Option<&PlacedBounds>) {
     let [above, below] = search.elements(elements);
     search.solves += 1;

@@ -102,7 +102,7 @@ impl<'a> Sweep<'a> {
     /// Appends the rows of one position to `rows`, left side first; none if the position has no contact.
     ///
     /// # Errors
-    /// Values that are not finite; angles beyond ±0.5 rad.
+    /// Values that are not finite; angles beyond ±0.5 rad; a body that varies and follows the other one's shape all over.
     pub fn position(&mut self, position: &Position, rows: &mut Vec<SweepRow>) -> Result<()> {
         let Some(touch) = self.search.touch_near(position, &self.selection, None)? else { return Ok(()) };
         let [left, right] = touch.sides.map(|side| side.touch.contacts[0].rolling_radius);

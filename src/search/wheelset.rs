@@ -1,8 +1,8 @@
 //! A wheelset on its track: both sides lowered, with the roll solved, neglected or given.
 //!
 //! The wheelset is turned about the middle of its axle, c: a point p of it, relative to c, goes to
-//! c + A p, with A of [`wheel_rotation`](super::wheel_rotation). So the right-hand profile origin, S out along the axle and R below it, is at
-//! c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
+//! c + A p, with A of [`wheel_rotation`](super::wheel_rotation). So with the yaw ψ and the roll φ the right-hand profile origin, S out
+//! along the axle and R below it, is at c + (S cosψ cosφ − R sinφ, S sinψ, −S cosψ sinφ − R cosφ).
 
 use nalgebra::{Isometry2, Vector2};
 
@@ -88,7 +88,7 @@ impl WheelsetOnTrack {
         along + SIGNS[side] * position.yaw.sin() * self.sides[side].wheelset.wheel_x
     }
 
-    /// Returns whether both rails have one profile along the whole track and are no rollers.
+    /// Returns whether every rail and wheel has one profile, and no rail is a roller.
     pub(crate) fn on_plain_rails(&self) -> bool {
         self.sides.iter().all(|side| matches!(side.pair, SidePair::Swept(_)) && side.pair.roller().is_none())
     }
@@ -137,7 +137,7 @@ pub(crate) struct LowestPlaces {
 }
 
 impl LowestPlaces {
-    /// Elements of wheel and rail that meet on each side; what is found there is analytic in the position as long as they stay the same.
+    /// Gives the elements of wheel and rail that meet on each side. While they stay the same, results are analytic in the position.
     pub fn elements(&self) -> [[u32; 2]; 2] {
         self.meetings.map(|meeting| meeting.elements)
     }
@@ -222,7 +222,7 @@ impl WheelsetOnTrack {
 
 impl WheelsetSearch<'_> {
     /// Moves the middle of the axle to a place along the track \[mm\], in the coordinate of the lists of slices, and turns the wheelset
-    /// about it by a pitch \[rad\], + forward at the bottom: −pitch of a wheel is lowest. Of no meaning for bodies of one profile.
+    /// about its axle by a pitch \[rad\], + forward at the bottom: −pitch of a wheel is lowest. Without effect on bodies of one profile.
     pub fn stand_at(&mut self, along: f64, pitch: f64) {
         self.sides.iter_mut().for_each(|side| side.stand_at(along, pitch));
     }
@@ -234,7 +234,8 @@ impl WheelsetSearch<'_> {
     /// about the axle moves a flange sideways faster than down. The result is the root that Newton's method
     /// reaches from zero roll, else the one between zero and a flange on top of its rail.
     /// Accuracy: heights and roll to rounding at the size of the wheelset, about 1e-13 mm and 1e-16 rad.
-    /// Cost: the two sides are lowered two to four times on treads, ten times at most where a flange is steeper than 73°; 64 at most.
+    /// Cost: the two sides are lowered two to four times on treads, up to ten times where a flange is steeper than 73°, never more than 64
+    /// times.
     ///
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over. Of the kind
@@ -246,12 +247,12 @@ impl WheelsetSearch<'_> {
         self.touch_near(position, selection, None)?.ok_or_else(nowhere)
     }
 
-    /// Does what [`WheelsetSearch::touch`] does, `None` where there is no contact, beginning from the places of a touch nearby. They spare the search for a roll where
-    /// they are still the lowest; elsewhere they are forgotten. Where contacts are steeper than 73°, several rolls may have contact
-    /// on both sides, and the nearby one is found.
+    /// Lowers the wheelset as [`WheelsetSearch::touch`] does, from the places of a touch nearby; `None` where there is no contact. Where
+    /// these places are still the lowest, they save the search for a roll; elsewhere they are not used. Where contacts are steeper than
+    /// 73°, several rolls may have contact on both sides, and the nearby one is found.
     ///
     /// # Errors
-    /// The other ones of [`WheelsetSearch::touch`].
+    /// Those of [`WheelsetSearch::touch`], other than that there is no contact.
     pub(crate) fn touch_near(
         &mut self,
         position: &Position,
@@ -301,8 +302,7 @@ impl WheelsetSearch<'_> {
         }
     }
 
-    /// Lowers both sides at the roll at which both wheels touch at the places of a touch nearby; `None` where these are not the lowest
-    /// any more.
+    /// Lowers both sides at the roll at which both wheels touch at the places of a touch nearby; `None` where these are not the lowest.
     fn confirmed(&mut self, position: &Position, near: &LowestPlaces, within: f64) -> Option<Lowered> {
         let kept = self.kept(position, near.roll, &near.meetings)?;
         let kept = self.follow(position, kept, &near.meetings).ok()?;
@@ -360,8 +360,8 @@ impl WheelsetSearch<'_> {
         far.get_or_insert_with(|| Far::new(level.kept.difference())).next()
     }
 
-    /// Returns the next roll to try between two rolls with different signs of the height difference: the root with the places of contact kept
-    /// from the end that is nearer to touching, or else from the other end, or else the middle. Every fourth roll is the middle.
+    /// Returns the next roll to try between two rolls with different signs of the height difference: the root with the places of contact
+    /// kept from the end that is nearer to touching, or else from the other end, or else the middle. Every fourth roll is the middle.
     fn between(
         &mut self,
         position: &Position,
@@ -488,5 +488,5 @@ impl KeptPlaces {
     }
 }
 
-/// Interval, in rolls tried between two ends, at which the middle is taken.
+/// Of so many rolls tried one is the middle between the ends.
 const HALVED: u32 = 4;

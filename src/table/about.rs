@@ -1,14 +1,14 @@
-//! What a table is of.
+//! The ranges, the nominal radius and the tolerance of a table.
 
 use super::cell::{BREAK, INSIDE, YAW_COEFFICIENTS};
 use crate::numerics::interval::Interval;
 
-/// What a table is of.
+/// The ranges, the nominal radius and the tolerance of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct About {
     /// Range of lateral displacements \[mm\].
     pub lateral: Interval,
-    /// Range of yaws \[rad\]: with equal ends the one yaw that all displacements have.
+    /// Range of yaws \[rad\]; with equal ends it is the one yaw of all displacements.
     pub yaw: Interval,
     /// Nominal rolling radius \[mm\], over which the tolerance of angles is taken.
     pub radius: f64,

@@ -12,21 +12,20 @@ use crate::search::WheelsetOnTrack;
 /// Distance of the displacements \[mm\] between which breaks are looked for.
 const STEP: f64 = 0.02;
 
-/// Gap \[mm\] of near misses for each mm of a step, beside that of the slope of the contact: rails are not steeper than flanges are.
+/// Gap \[mm\] up to which near misses count for each mm of a step, beside the slope of the contact: the slope of a flange.
 const STEEPEST: f64 = 3.0;
 
-/// Width \[mm\] below which near misses count as such, although slopes do not exclude that they touch.
+/// Width \[mm\] up to which near misses count as not touching, although slopes do not exclude that they touch.
 const GRAZING: f64 = 1e-5;
 
 /// Jump \[mm\] of a place of contact across a break above which it is a hop. A place that crosses a joint moves less over the width of
 /// the break.
 pub(super) const HOP: f64 = 1e-5;
 
-/// Steps that are looked at with one search: any number of threads gives the same bits.
+/// Number of steps that are searched one from another. It does not depend on the number of threads, so that the bits do not, either.
 const CHUNK: usize = 32;
 
-/// Most breaks between two displacements that are looked at together: where there are more, bodies touch all over, and rounding decides
-/// which elements do.
+/// Most breaks within [`CHUNK`] steps: where there are more, bodies touch all over, and rounding decides which elements do.
 const MOST: usize = 10_000;
 
 /// A break: the states on both sides of it.
@@ -85,8 +84,8 @@ fn no_range() -> Error {
     Error::new("table: lateral", "no range", "FROM < TO", "correct it")
 }
 
-/// Finds the states at ascending displacements, each from the one before. Unless they lead to what the last one has without them, each is
-/// searched for on its own.
+/// Finds the states at ascending displacements, each search beginning from the state before. If a search on its own finds another last
+/// state, all are searched for on their own.
 fn states(sampler: &mut Sampler<'_>, all: &[f64]) -> Result<Vec<State>> {
     let within = STEEPEST * STEP;
     let mut states: Vec<State> = Vec::with_capacity(all.len());

@@ -11,7 +11,7 @@ pub const YAW_COEFFICIENTS: usize = 5;
 /// Width \[mm\] to which a place is found where contact hops or crosses a joint.
 pub const BREAK: f64 = 1e-9;
 
-/// Distance \[mm\] from a curve over yaw at which one of its sides is searched for certain.
+/// Distance \[mm\] from a curve over yaw at which a search certainly finds the contact of its own side: above the curve's error.
 pub(super) const INSIDE: f64 = 1e-7;
 
 /// How a cell begins.
@@ -31,7 +31,7 @@ impl Beginning {
     /// All, in the order of their codes.
     pub const ALL: [Self; 4] = [Self::Smooth, Self::Joint, Self::Hop, Self::Edge];
 
-    /// The number that stands for it in files: 0 smooth, 1 joint, 2 hop, 3 edge.
+    /// Returns its code in files: 0 smooth, 1 joint, 2 hop, 3 edge.
     pub fn code(self) -> u8 {
         self as u8
     }
@@ -53,7 +53,7 @@ impl Lacks {
     /// All, in the order of their codes.
     pub const ALL: [Self; 3] = [Self::Nothing, Self::Ellipse, Self::Curvatures];
 
-    /// The number that stands for it in files: 0 nothing, 1 ellipse, 2 curvatures and ellipse.
+    /// Returns its code in files: 0 nothing, 1 ellipse, 2 curvatures and ellipse.
     pub fn code(self) -> u8 {
         self as u8
     }

@@ -44,18 +44,18 @@ pub struct ContactTable {
     forks: Vec<Fork>,
     cells: Vec<Cell>,
     /// Coefficient number k of the powers of t, of number j of those of u, of quantity q in cell c, at
-    /// ((c · powers of u + j) · [`COEFFICIENTS`] + k) · stride + q; not a number where the quantity does not exist.
+    /// ((c · powers of u + j) · [`COEFFICIENTS`] + k) · stride + q; NaN where the quantity does not exist.
     coefficients: Vec<f64>,
 }
 
 /// Quantities that are computed together.
 const LANES: usize = 8;
 
-/// Positions that one thread takes at a time: their values, 500 kB, stay in its cache until all are there.
+/// Positions that one thread takes at a time: their values, 500 kB, stay in its cache until all are computed.
 const TOGETHER: usize = 2048;
 
 impl ContactTable {
-    /// Takes a tree as a table.
+    /// Makes a table of a tree.
     ///
     /// # Errors
     /// Parts, curves or coefficients that do not fit each other.
@@ -103,7 +103,7 @@ impl ContactTable {
         Self::of(about, quantities, tree)
     }
 
-    /// Returns what the table is of.
+    /// Returns the ranges, the nominal radius and the tolerance of the table.
     pub fn about(&self) -> About {
         self.about
     }
@@ -129,13 +129,14 @@ impl ContactTable {
         &self.forks
     }
 
-    /// Returns the number of a quantity: of the right-hand side, the left-hand side, or the wheelset (`None`).
+    /// Returns the number of the quantity with this name, of the right-hand side (`true`), the left-hand side or the wheelset (`None`);
+    /// `None` if the table does not have it.
     pub fn number(&self, name: &str, right: Option<bool>) -> Option<usize> {
         self.quantities.iter().position(|quantity| quantity.name == name && quantity.right == right)
     }
 
-    /// Returns the coefficients of 1, t, … t⁸ of a quantity over a cell that belong to u^j, with t from −1 to 1 from curve to curve and u over
-    /// the yaws of the cell; not numbers where the quantity does not exist.
+    /// Returns the coefficients of 1, t, … t⁸ of a quantity over a cell that belong to u^j, with t from −1 to 1 from curve to curve and
+    /// u over the yaws of the cell; NaN where the quantity does not exist.
     pub fn coefficients(&self, cell: usize, quantity: usize, j: usize) -> [f64; COEFFICIENTS] {
         let (stride, rows) = (stride(&self.quantities), self.about.yaw_coefficients());
         from_fn(|k| self.coefficients[((cell * rows + j) * COEFFICIENTS + k) * stride + quantity])
@@ -174,11 +175,11 @@ impl ContactTable {
         self.curves[self.cells[cell].curves[0]].kind
     }
 
-    /// Gives all quantities at a lateral displacement \[mm\] and a yaw \[rad\]: `out` has their number. What does not exist is not a number:
-    /// outside the range, where a wheel is off its rail, curvatures at a kink.
+    /// Gives all quantities at a lateral displacement \[mm\] and a yaw \[rad\]; `out` has a place for each. What does not exist is NaN:
+    /// everything outside the range or where a wheel is off its rail, curvatures at a kink.
     ///
-    /// Accuracy: the stated error of each quantity, but for [`About::beside_curves`] around hops and joints. Cost: some 50 ns under one yaw,
-    /// 300 ns over a range of yaws.
+    /// Accuracy: the stated error of each quantity, except within [`About::beside_curves`] of hops and joints. Cost: some 50 ns under
+    /// one yaw, 300 ns over a range of yaws.
     pub fn fill(&self, lateral: f64, yaw: f64, out: &mut [f64]) {
         match self.cell(lateral, yaw) {
             Some(cell) => self.fill_from(cell, lateral, yaw, out),
@@ -208,9 +209,9 @@ impl ContactTable {
         }
     }
 
-    /// Gives the quantities with these numbers at many lateral displacements \[mm\] and yaws \[rad\], as many or one: `out` has the values of
-    /// the first at all positions, then those of the second, and so on. It runs on the threads of the current rayon pool; any number of
-    /// threads gives the bits of [`ContactTable::fill`].
+    /// Gives the quantities with these numbers at many lateral displacements \[mm\] and as many yaws \[rad\], or one yaw for all. `out`
+    /// gets the values of the first quantity at all positions, then those of the second, and so on. It runs on the threads of the
+    /// current rayon pool; any number of threads gives the bits of [`ContactTable::fill`].
     pub fn fill_many(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], out: &mut [f64]) {
         let mut parts: Vec<Vec<&mut [f64]>> = Vec::new();
         parts.resize_with(lateral.len().div_ceil(TOGETHER), Vec::new);
@@ -248,14 +249,15 @@ impl ContactTable {
         cells
     }
 
-    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under a yaw \[rad\], in ascending order: the table has
-    /// nothing there.
+    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under a yaw \[rad\], in ascending order; the table
+    /// has no values there.
     pub fn off_rail(&self, yaw: f64) -> Vec<Interval> {
         let off = self.under(yaw).into_iter().filter(|cell| !self.cells[*cell].touches);
         off.map(|cell| self.ends(cell, yaw)).collect()
     }
 
-    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under one of the yaws, in ascending order.
+    /// Returns the intervals of displacements \[mm\] in which a wheel is off its rail under some yaw, in ascending order: those of each
+    /// cell under the two ends and the middle of its yaws.
     pub fn off_rail_somewhere(&self) -> Vec<Interval> {
         let off = (0..self.cells.len()).filter(|cell| !self.cells[*cell].touches);
         let mut ranges: Vec<Interval> = off
@@ -276,20 +278,20 @@ impl ContactTable {
         ranges
     }
 
-    /// Returns the displacements \[mm\] of hops, joints or edges under a yaw \[rad\], in ascending order.
+    /// Returns the displacements \[mm\] of hops, joints or edges under a yaw \[rad\], in ascending order, without the ends of the range.
     pub fn places(&self, kind: Beginning, yaw: f64) -> Vec<f64> {
         let cells = self.under(yaw).into_iter().skip(1);
         cells.filter(|cell| self.begins(*cell) == kind).map(|cell| self.ends(cell, yaw).low).collect()
     }
 }
 
-/// Gives the number of coefficients in a row: that of the quantities, and what is missing to whole lanes.
+/// Gives the number of coefficients in a row: that of the quantities, rounded up to whole lanes.
 #[inline(always)]
 fn stride(quantities: &[TableQuantity]) -> usize {
     quantities.len().next_multiple_of(LANES)
 }
 
-/// A part of each column. The work is compiled for each kind of machine.
+/// A part of each column. The work on it is compiled for each set of vector instructions.
 struct ColumnsPart<'p, 'c> {
     table: &'p ContactTable,
     lateral: &'p [f64],

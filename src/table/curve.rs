@@ -14,7 +14,7 @@ pub struct Curve {
     pub yaw: Interval,
     /// What happens across it.
     pub kind: Beginning,
-    /// Coefficients \[mm\] of 1, u, …; behind those of a table over one yaw 0.
+    /// Coefficients \[mm\] of 1, u, …; under one yaw all but the first are 0.
     pub coefficients: [f64; YAW_COEFFICIENTS],
 }
 
@@ -26,7 +26,7 @@ impl Curve {
         Self { yaw, kind, coefficients }
     }
 
-    /// Interpolates displacements \[mm\] at the nodes of a range of yaws \[rad\]; a single one is under all yaws.
+    /// Interpolates displacements \[mm\] at the nodes of a range of yaws \[rad\]; a single displacement gives a constant curve.
     pub(super) fn through(nodes: &[f64], yaw: Interval, kind: Beginning) -> Self {
         let Ok(nodes) = <[f64; YAW_COEFFICIENTS]>::try_from(nodes) else {
             return Self::constant(nodes.first().copied().unwrap_or_default(), yaw, kind);
@@ -69,7 +69,7 @@ pub(super) fn node(k: usize, count: usize) -> f64 {
 /// Coefficients of the powers of t of the polynomials that are 1 at one node and 0 at the others, at \[node\]\[power\].
 pub(super) static POWERS: LazyLock<[[f64; COEFFICIENTS]; COEFFICIENTS]> = LazyLock::new(powers);
 
-/// Those of the powers of u.
+/// Coefficients of the powers of u of the polynomials that are 1 at one node and 0 at the others, at \[node\]\[power\].
 pub(super) static YAW_POWERS: LazyLock<[[f64; YAW_COEFFICIENTS]; YAW_COEFFICIENTS]> = LazyLock::new(powers);
 
 /// Gives the coefficient of t^i of the polynomial that is 1 at node k and 0 at the others, at \[k\]\[i\].

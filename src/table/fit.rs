@@ -12,26 +12,26 @@ use crate::error::{Result, in_order};
 use crate::numerics::interval::Interval;
 use crate::search::WheelsetOnTrack;
 
-/// Stated error over the largest difference in the check of a cell. The check is made where the polynomial through the nodes is
-/// largest, between them.
+/// Stated error over the largest difference in the check of a cell. The check is made between the nodes, where the error of an
+/// interpolation is largest.
 pub(super) const MARGIN: f64 = 2.0;
 
-/// Share of the tolerance that the check of a cell may find: with the margin half of the tolerance is left.
+/// Share of the tolerance that the check of a cell may find: the stated error is then at most half of the tolerance.
 const ACCEPTED: f64 = 0.25;
 
-/// Share of the tolerance by which a polynomial may step back where the function does not.
+/// Share of the tolerance by which a polynomial may fall between two points where the samples ascend, or rise where they descend.
 const STEP_BACK: f64 = 1e-3;
 
-/// Width \[mm\] below which a cell is not divided any more; the stated error then shows what is left.
+/// Width \[mm\] up to which a cell is not divided, whatever its error; the stated error then shows it.
 const SHORTEST: f64 = 1e-6;
 
-/// Width \[mm\] of cells in which a jump is looked for that elements do not show: two places on one pair of elements.
+/// Width \[mm\] up to which a cell that is too coarse is searched for a jump between two places on the same elements.
 const MAY_JUMP: f64 = 1e-3;
 
 /// States along a row of a cell: at the nodes, and at points between each two of them.
 const SAMPLES: usize = 2 * COEFFICIENTS - 1;
 
-/// Points at which polynomials are looked at for steps back.
+/// Number of points at which polynomials are checked for being monotone.
 const LOOKED_AT: usize = 33;
 
 /// Coefficients along the displacement, of 1, t, …
@@ -40,21 +40,21 @@ type Powers = [QuantityValues; COEFFICIENTS];
 /// A cell with its polynomials.
 pub(super) struct FittedCell {
     pub cell: Cell,
-    /// Coefficients of 1, u, … of those of 1, t, … of all quantities; one with one row, and none where nothing touches.
+    /// For each power of u the coefficients of 1, t, … of all quantities; one power under one yaw, and none where nothing touches.
     pub coefficients: Vec<Powers>,
     /// Largest differences in the check.
     pub errors: QuantityValues,
 }
 
-/// What came of fitting a region.
+/// The result of fitting a region.
 pub(super) enum RegionFit {
-    /// One cell will do.
+    /// One cell is accurate enough, or cannot be divided.
     Cell(Box<FittedCell>),
     /// Breaks were found that were not known: they have been added to the rows.
     Unseen,
     /// It has to be divided.
     Coarse {
-        /// The polynomials of the yaw err more than those of the displacement.
+        /// Whether the polynomials of the yaw have larger errors than those of the displacement.
         over_yaw: bool,
         /// The states in the middle of all rows.
         middles: Vec<State>,
@@ -196,7 +196,7 @@ fn jump(sampler: &mut Sampler<'_>, samples: &[State], known: &[Break]) -> Result
 }
 
 impl FittedCell {
-    /// Fits the polynomials, and tells whether those of the yaw err more than those of the displacement.
+    /// Fits the polynomials, and tells whether those of the yaw have larger errors than those of the displacement.
     fn new(
         cell: Cell,
         quantities: &[TableQuantity],
@@ -219,8 +219,8 @@ impl FittedCell {
         (fitted, over_yaw > along)
     }
 
-    /// Finds the errors at all samples. Gives the largest share of a tolerance between nodes of the displacement, and of the yaw, at nodes of
-    /// the other.
+    /// Finds the errors at all samples. Returns the largest one, as a share of its tolerance, between nodes of the displacement at nodes of
+    /// the yaw, then between nodes of the yaw at nodes of the displacement.
     fn compare(
         &mut self,
         quantities: &[TableQuantity],
@@ -300,11 +300,11 @@ fn through(samples: &[State]) -> Powers {
     sum
 }
 
-/// Most that polynomials are stretched beyond the ends of their row, in halves of it.
+/// Most by which polynomials are stretched beyond the ends of their row, as a share of half its length.
 const MOST_STRETCHED: f64 = 0.5;
 
-/// Gives polynomials of t from −1 to 1 between curves from those between the ends of a row, which lie inside by what curves err. `ends` are
-/// the places of the curves in the row. A row that is not much longer than that is left alone.
+/// Turns polynomials of t from −1 to 1 between the ends of a row into those between curves, near which the row ends. `ends` are the
+/// places of the curves in the row's t. A row too short for that keeps its polynomials.
 fn stretched(powers: &Powers, ends: Interval) -> Powers {
     let (slope, middle) = (ends.width() / 2.0, ends.at(0.5));
     if !((ends.low + 1.0).abs() < MOST_STRETCHED && (ends.high - 1.0).abs() < MOST_STRETCHED) {

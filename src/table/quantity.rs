@@ -5,13 +5,13 @@ use crate::search::Contact;
 /// Length \[mm\] of a patch, over which the tolerances of curvatures, approaches and pressures are taken.
 pub const TOLERANCE_LENGTH: f64 = 10.0;
 
-/// Pressure \[N/mm²\] whose share is the tolerance of pressures.
+/// Pressure \[N/mm²\] of which the tolerance of pressures is a share: that of lengths over [`TOLERANCE_LENGTH`].
 const PRESSURE: f64 = 1000.0;
 
-/// Share of a tolerance below which no error is stated: it covers the rounding of readers.
+/// Least stated error, as a share of the tolerance: it covers the rounding of readers.
 const LEAST_ERROR: f64 = 1e-6;
 
-/// The lowest place of one side.
+/// The values at the lowest place of contact of one side.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SideValues {
     /// Height of the axle's middle \[mm\].
@@ -35,8 +35,8 @@ pub enum Needs {
 }
 
 impl Needs {
-    /// The number that stands for it in files: 0 contact, 1 curvatures, 2 ellipse. A quantity exists where this and the code of what
-    /// its side lacks are not more than 2.
+    /// Returns its code in files: 0 contact, 1 curvatures, 2 ellipse. A quantity exists where the sum of this code and of that of what
+    /// its side lacks is at most 2.
     pub fn code(self) -> u8 {
         self as u8
     }
@@ -57,7 +57,7 @@ enum QuantityUnit {
 pub struct TableQuantity {
     /// Its name, with the unit; that of the sweep's column where it has one.
     pub name: &'static str,
-    /// Whether it is of the right-hand side; `None` of the wheelset.
+    /// Whether it is of the right-hand side; `None` for the wheelset.
     pub right: Option<bool>,
     /// What has to exist.
     pub needs: Needs,
@@ -99,7 +99,7 @@ pub(super) const MOST: usize = 1 + 2 * SIDE.len();
 pub(super) type QuantityValues = [f64; MOST];
 
 impl QuantityUnit {
-    /// The tolerance of what is measured in it, from that of lengths and the nominal rolling radius \[mm\].
+    /// Returns the tolerance of quantities in this unit, from that of lengths and the nominal rolling radius \[mm\].
     fn tolerance(self, length: f64, radius: f64) -> f64 {
         match self {
             Self::Length => length,
@@ -112,8 +112,8 @@ impl QuantityUnit {
 }
 
 impl TableQuantity {
-    /// Lists the quantities of a table, with tolerances from that of lengths and the nominal rolling radius \[mm\]; those of Hertz's ellipse
-    /// only where something presses.
+    /// Lists the quantities of a table, with tolerances from that of lengths and the nominal rolling radius \[mm\]; those of Hertz's
+    /// ellipse only if `pressed`.
     pub(super) fn all(tolerance: f64, radius: f64, pressed: bool) -> Vec<Self> {
         let of = |name, right, unit: QuantityUnit, needs| {
             let tolerance = unit.tolerance(tolerance, radius);
@@ -128,7 +128,7 @@ impl TableQuantity {
         all
     }
 
-    /// Returns the quantity with this name and side, with its tolerance and error; `None` of an unknown one.
+    /// Returns the quantity with this name and side, with this tolerance and error; `None` for an unknown one.
     pub(super) fn named(name: &str, right: Option<bool>, [tolerance, error]: [f64; 2]) -> Option<Self> {
         let mut all = Self::all(1.0, 1.0, true).into_iter();
         let known = all.find(|known| known.name == name && known.right == right)?;

@@ -40,7 +40,7 @@ impl Topology {
 struct NearMiss {
     /// Vertical gap \[mm\].
     gap: f64,
-    /// Rate at which the gap grows with the displacement, but for the roll.
+    /// Rate at which the gap grows with the displacement, without the effect of the roll.
     rate: f64,
 }
 
@@ -84,7 +84,8 @@ impl<'a> Sampler<'a> {
         self.touch(lateral, within, None)
     }
 
-    /// Does what [`Sampler::at`] does, with less work where the places of a state nearby still touch.
+    /// Searches at one displacement \[mm\], with near misses up to a gap `within` \[mm\], with less work than [`Sampler::at`] where the
+    /// places of a state nearby still touch.
     ///
     /// # Errors
     /// The errors of the search.
@@ -92,7 +93,7 @@ impl<'a> Sampler<'a> {
         self.touch(lateral, within, state.lowest.as_ref().filter(|_| state.steepest() < STEEP))
     }
 
-    /// Finds where the places of contact of one state give way to those of a later one, by following both, which takes no search.
+    /// Finds where contact passes from the places of one state to those of a later one, by following both, which takes no search.
     /// Returns an interval of at most [`BREAK`]; `None` where the same elements touch, or nothing does.
     pub fn handover(&mut self, from: &State, to: &State) -> Option<Interval> {
         let (before, after) = (from.lowest?, to.lowest?);
@@ -170,8 +171,8 @@ fn side_values(z: f64, contact: &Contact, pressed: Option<(Pressed, f64)>) -> (S
     (side, Lacks::Nothing, curvatures.long_axis_rad.abs() < FRAC_PI_4)
 }
 
-/// Rate \[mm/mm\] by which a gap may change beside what the slopes at one end say: by the roll, and by the turning of the tangents, which is
-/// further counted by how much that of the contact turns.
+/// Rate \[mm/mm\] at which a gap may change in addition to what the slopes at one end give: by the roll and by the turning of the
+/// tangents. Twice the turning of the contact's own tangents is added to it.
 const UNSEEN: f64 = 0.05;
 
 impl State {
@@ -188,7 +189,7 @@ impl State {
     }
 
     /// Tells whether no other place can have touched between this displacement and another one at which the same places touch: no near
-    /// miss of either end closes on the way, by the slopes there and what they may change by.
+    /// miss of either end closes in between, by the slopes there and a margin.
     pub fn alone_until(&self, other: &Self) -> bool {
         let width = (other.lateral - self.lateral).abs();
         let turned = [0, 1].map(|k| (self.slopes[k] - other.slopes[k]).abs());
@@ -200,7 +201,7 @@ impl State {
         safe(self, inward) && safe(other, -inward)
     }
 
-    /// Returns how far the places of contact are from those of another state \[mm\].
+    /// Returns the largest distance of a place of contact from that of another state, along the profiles' abscissae \[mm\].
     pub fn moved(&self, other: &Self) -> f64 {
         self.places.iter().zip(&other.places).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
@@ -211,7 +212,7 @@ impl State {
         self.topology.map(|topology| (topology.lacks, topology.along))
     }
 
-    /// Returns the largest slope of a place of contact.
+    /// Returns the largest |slope| of a place of contact.
     pub fn steepest(&self) -> f64 {
         self.slopes[0].abs().max(self.slopes[1].abs())
     }

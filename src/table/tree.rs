@@ -23,18 +23,19 @@ pub struct Fork {
     pub curve: Option<usize>,
     /// The yaw \[rad\]; 0 where it is a curve.
     pub yaw: f64,
-    /// What is below it, and what begins at it.
+    /// The parts below it, and from it upwards.
     pub parts: [PlanePart; 2],
 }
 
-/// Cells, the curves between them, and the forks on the way to them. The first fork is where the way begins; children have greater numbers.
+/// Cells, the curves between them, and the forks by which a cell is found. The way begins at the first fork; what a fork leads to has a
+/// greater number.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Tree {
     pub curves: Vec<Curve>,
     pub forks: Vec<Fork>,
     pub cells: Vec<Cell>,
-    /// Of each cell the coefficients of u^j tᵏ of all quantities, at j · [`COEFFICIENTS`](super::COEFFICIENTS) + k; none where nothing
-    /// touches, not a number where a quantity does not exist.
+    /// For each cell the coefficients of u^j tᵏ of all quantities, at j · [`COEFFICIENTS`](super::COEFFICIENTS) + k; none where nothing
+    /// touches, NaN where a quantity does not exist.
     pub coefficients: Vec<Vec<QuantityValues>>,
 }
 
@@ -105,7 +106,7 @@ impl Tree {
         self.forks.len() - 1
     }
 
-    /// Adds the forks between so many parts in a row, with the curves between them, and the parts by `add`.
+    /// Adds the forks between `count` parts in a row, with the numbers of the curves between them; `add` adds the part of an index.
     fn fork_row(
         &mut self,
         count: usize,

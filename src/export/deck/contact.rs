@@ -63,7 +63,7 @@ pub fn contact_inp(deck: &Deck<'_>, settings: &ContactSettings, sink: &mut dyn W
     block.finish()
 }
 
-/// Writes the distances of one column of elements.
+/// Writes numbers, [`PER_LINE`] on a line; each column of elements begins a line.
 pub(super) fn rows(block: &mut Block<'_>, column: &[Field]) -> io::Result<()> {
     for run in column.chunks(PER_LINE) {
         let room = block.room(run.len() * WIDTH + 1)?;
@@ -75,10 +75,11 @@ pub(super) fn rows(block: &mut Block<'_>, column: &[Field]) -> io::Result<()> {
     Ok(())
 }
 
-/// Largest constant Ak of dissimilar materials with which CONTACT solves normal and tangential problem once, one after the other.
+/// CONTACT's constant |Ak| of dissimilar materials below which it solves the normal and then the tangential problem, each once.
 const SIMILAR: f64 = 1e-4;
 
-/// Most rounds in which CONTACT solves both where each acts on the other: 20 change its tractions by at most 0.2 % beyond.
+/// Most rounds in which CONTACT solves the normal and the tangential problem where each acts on the other. More rounds change its
+/// tractions by at most 0.2 %.
 const ROUNDS: u32 = 20;
 
 /// The surface over which CONTACT's distances are given.
@@ -86,7 +87,7 @@ const ROUNDS: u32 = 20;
 pub(super) enum DistanceSurface<'a> {
     /// The tangent plane.
     Plane,
-    /// A surface that is curved along y, with the lines of its inclinations.
+    /// A surface that is curved along y, with the lines of the deck that give its inclinations.
     Curved(&'a str),
 }
 
@@ -154,7 +155,7 @@ pub(super) fn control(grid: &Lattice, settings: &ContactSettings, reference: Dis
     text + "   9 1           IBASE IPLAN\n"
 }
 
-/// Gives CONTACT's Ak, by which a pressure moves surfaces sideways against each other; 0 for equal materials.
+/// Gives CONTACT's Ak, by which a pressure moves the surfaces tangentially against each other; 0 for equal materials.
 fn dissimilarity(settings: &ContactSettings) -> f64 {
     let Bodies { rail, wheel } = settings.material;
     let mean = 2.0 / (rail.shear_modulus().recip() + wheel.shear_modulus().recip());

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! CONFCURV   1 mm                            (a8,i4,1x,a8)   magic, version, unit
-//!       18                                   (i8)            comment lines that follow
+//!       20                                   (i8)            comment lines that follow
 //! # …
 //!      128      96                           (2i8)           n_sigma n_eta
 //! sigma0 eta0                                (2e25.16)       centre of the first cell
@@ -57,7 +57,7 @@ impl<'a> CurvedDeck<'a> {
     /// Checks the steps of a grid.
     ///
     /// # Errors
-    /// A grid of unequal steps, or of one row or column, because a deck has no field for the places of its points.
+    /// A grid of unequal steps, or of one row or column, because decks state a grid by its first point and its steps.
     pub fn new(header: &'a Header, fields: &'a CurvedFields<'a>) -> Result<Self> {
         let format = "the text decks";
         let steps =
@@ -104,12 +104,12 @@ pub fn conform_curved_wrp(deck: &CurvedDeck<'_>, sink: &mut dyn Write) -> io::Re
 
 /// Writes `contact.inp` in the conformal form: C = 4 with the surface's inclinations, and distances along its normal.
 ///
-/// CONTACT's PEN is one number for all elements. A rigid approach closes δ cos α, which is none: it is taken off the
+/// CONTACT's PEN is one number for all elements, but a rigid approach closes δ cos α, which varies: it is subtracted from the
 /// distances here, and PEN is 0. So the approach is prescribed, also where it was estimated from a load. CONTACT's
 /// inclinations turn about x = η from y to z (down), so that they are −α.
 ///
-/// With a motion E = 9: CKSI, CETA and CPHI hold the slip that is linear from C, and a line for each element adds what the
-/// turning surface has beyond, so that the sum is the exact slip at the element's centre.
+/// With creepages E = 9: CKSI, CETA and CPHI hold the slip that is linear from C, and a line for each element adds what the
+/// curved surface has beyond it, so that the sum is the exact slip at the element's centre.
 ///
 /// # Errors
 /// The errors of the sink.
@@ -175,8 +175,8 @@ pub fn contact_curved_inp(
 /// Share of a step by which CONTACT shifts the lever of the spin in rolling.
 const SPIN_SHIFT: f64 = 1.0 / 6.0;
 
-/// Writes the extra slip (x, y) of every element in the order of the distances: that of the rail's surface there, less
-/// CONTACT's CKSI − CPHI y and CETA + CPHI (x ± DQ/6).
+/// Writes the extra slip (x, y) of every element in the order of the distances: the slip on the rail's surface there minus
+/// CONTACT's own, CKSI − CPHI y and CETA + CPHI (x ± DQ/6).
 fn slips(block: &mut Block<'_>, deck: &CurvedDeck<'_>, creepages: &Creepages) -> io::Result<()> {
     let (fields, grid) = (deck.fields, deck.fields.grid());
     let Creepages { longitudinal, lateral, spin, forward, .. } = *creepages;

@@ -3,7 +3,7 @@
 //!
 //! The card layouts of the original CONFORM and COUNTACT programs are not public. `conform.wrp` and
 //! `countact.wrp` carry what those solvers read (separation, rail normals, boundary-fitted cells) in the grammar
-//! of `wrp`, and `tests/clients/read_wrp.f90` reads all three. `contact.inp` is for Vollebregt's CONTACT.
+//! of `wrp`; `crates/cli/tests/clients/read_wrp.f90` reads these and `separation.wrp`. `contact.inp` is for Vollebregt's CONTACT.
 
 mod contact;
 mod curved;

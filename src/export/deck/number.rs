@@ -26,8 +26,8 @@ const TEN_16: u64 = 10_000_000_000_000_000;
 
 /// Returns the text of `format!("{x:>25.16E}")`, for finite x.
 ///
-/// Method: for 1e-11 ≤ |x| < 1e17 the 17 digits are the integer part of m·5ᵏ·2ᵉ⁺ᵏ, exact in 128 bits and rounded half to
-/// even. This is ten times faster than the standard library, which formats all other numbers.
+/// Method: for 1e-11 ≤ |x| < 1e17 the 17 digits are m·5ᵏ·2ᵉ⁺ᵏ, exact in 128 bits and then rounded half to even. This is ten
+/// times faster than the standard library, which formats all other numbers.
 pub(super) fn field(x: f64) -> Field {
     let mut text = [b' '; WIDTH];
     let Some((digits, exponent)) = decimal(x.abs()) else {
@@ -68,8 +68,7 @@ pub(super) fn field(x: f64) -> Field {
     text
 }
 
-/// Returns the 17 digits and the decimal exponent of the first digit of x ≥ 0, or `None` outside \[1e-11,
-/// 1e17).
+/// Returns the 17 digits and the decimal exponent of the first digit of x ≥ 0; `None` outside \[1e-11, 1e17), except for 0.
 fn decimal(x: f64) -> Option<(u64, i32)> {
     if x == 0.0 {
         return Some((0, 0));

@@ -73,7 +73,7 @@ fn put_tree(text: &mut String, table: &ContactTable) {
     }
 }
 
-/// Explains the file.
+/// Returns the comment lines, which explain the file.
 fn comments(table: &ContactTable, title: &str) -> Vec<String> {
     let about = table.about();
     let under = if about.over_yaw() { " under some yaws" } else { "" };

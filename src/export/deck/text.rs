@@ -20,7 +20,7 @@ impl<'a> Deck<'a> {
     /// Formats the numbers of a grid. The texts take 25 bytes a point.
     ///
     /// # Errors
-    /// A grid of unequal steps, or of one row or column, because a deck has no field for the places of its points.
+    /// A grid of unequal steps, or of one row or column, because decks state a grid by its first point and its steps.
     pub fn new(header: &'a Header, grid: &'a GridFields<'a>) -> Result<Self> {
         let fill = grid.fill_value();
         let number = |&s: &f64| field(if s.is_nan() { fill } else { s });

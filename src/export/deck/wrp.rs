@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! WRPATCH    1 mm                            (a8,i4,1x,a8)   magic, version, unit
-//!       14                                   (i8)            comment lines that follow
+//!       15                                   (i8)            comment lines that follow
 //! # …
 //!      128      96                           (2i8)           n_xi n_eta
 //! xi0 eta0                                   (2e25.16)       centre of the first cell
@@ -135,7 +135,7 @@ fn plane_head(deck: &Deck<'_>, magic: &str, notes: &[&str]) -> String {
     head(deck.header, magic, &comments, &deck.lattice())
 }
 
-/// Returns everything before the records, with these comments.
+/// Returns the head of a deck, up to the contact frame, with these comments.
 pub(super) fn head(header: &Header, magic: &str, comments: &[String], grid: &Lattice) -> String {
     let mut text = format!("{magic:<8}{:>4} {:<8}\n{:>8}\n", 1, "mm", comments.len());
     for comment in comments {

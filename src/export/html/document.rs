@@ -5,13 +5,13 @@ use serde::Serialize;
 /// The style of all pages.
 const STYLE: &str = include_str!("page.css");
 
-/// Forbids a page everything but its own text: no script, style, picture or number comes from elsewhere.
+/// Content security policy of a page: no script, style, picture or number comes from outside its own file.
 const POLICY: &str =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
 /// Returns an HTML document whose `script` finds `data` as JSON in the element `data`.
 ///
-/// Cost: one copy of the data. Text in the data cannot end its element, because JSON needs no `<` outside of strings, and
+/// Cost: a few copies of the data. Text in the data cannot end its element, because JSON needs no `<` outside of strings, and
 /// inside of them it is written as an escape.
 pub(super) fn document(title: &str, data: &impl Serialize, script: &str) -> Vec<u8> {
     let data = serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c");
@@ -36,7 +36,7 @@ fn escape(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// An element of a page ends at the first of these, wherever it stands.
+    /// A script element ends, or changes its state, at each of these words, even inside a string.
     #[test]
     fn scripts_cannot_end_their_element() {
         for script in [

@@ -37,7 +37,7 @@ pub struct FleetHeat {
     pub cells: usize,
     /// First displacement towards the wheel's own rail \[mm\].
     pub first: f64,
-    /// Distance of displacements \[mm\].
+    /// Step of the displacements \[mm\].
     pub step: f64,
     /// Shares \[%\], displacement by displacement.
     #[serde(serialize_with = "floats")]
@@ -72,14 +72,14 @@ pub struct FleetPage {
     pub columns: Vec<String>,
     /// The pairs with the largest conicity.
     pub worst: Vec<FleetWorst>,
-    /// Wheelset, rails and finding of the first pairs that have one.
+    /// Wheelset, rails and finding of the first pairs that have a finding.
     pub findings: Vec<[String; 3]>,
-    /// Number of pairs that have one.
+    /// Number of pairs that have a finding.
     pub with_finding: usize,
 }
 
 impl FleetPage {
-    /// Returns the page as HTML. Its size is that of the script, some 15 kB, and of the heat map, some 30 kB.
+    /// Returns the page as HTML. Its size is that of script and style, some 20 kB, and of the heat map, some 30 kB.
     pub fn html(&self) -> Vec<u8> {
         document(&self.title, self, SCRIPT)
     }

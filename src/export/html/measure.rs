@@ -16,19 +16,19 @@ pub struct MeasuredPage {
     /// Points of the nominal, x, z in turn \[mm\]; empty without one.
     #[serde(serialize_with = "floats")]
     pub nominal: Vec<f64>,
-    /// Points of the measured curve in the axes of the nominal, likewise; empty for a file that cannot be read.
+    /// Points of the measured curve in the axes of the nominal, x, z in turn \[mm\]; empty for a file that cannot be read.
     #[serde(serialize_with = "floats")]
     pub measured: Vec<f64>,
-    /// Points of the nominal, each with that of the measured curve on its normal: x, z, x, z in turn \[mm\].
+    /// Points of the nominal, each with the point of the measured curve on its normal: x, z, x, z in turn \[mm\].
     #[serde(serialize_with = "floats")]
     pub differences: Vec<f64>,
     /// How it was aligned.
     pub alignment: String,
-    /// Quantity in words, value with unit, how far it moves if the alignment is off, the interval of its spread; empty where there is none.
+    /// Name of a quantity, value with unit, its change if the alignment is off, the interval of its spread; empty where there is none.
     pub measures: Vec<[String; 4]>,
-    /// The limits that it breaks.
+    /// The limits that the profile exceeds.
     pub broken: Vec<String>,
-    /// What cannot be had and why, and what is doubtful.
+    /// What cannot be measured and why, and what is doubtful.
     pub findings: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ pub struct MeasuresPage {
 }
 
 impl MeasuresPage {
-    /// Returns the page as HTML. Its size is that of the script, some 15 kB, and some 15 kB a file.
+    /// Returns the page as HTML. Its size is that of script and style, some 20 kB, and some 15 kB for each file.
     pub fn html(&self) -> Vec<u8> {
         document(&self.title, self, SCRIPT)
     }

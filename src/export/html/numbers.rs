@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serializer;
 
-/// Writes numbers in single precision: little-endian, as base64. A page draws them; the exact ones are in other files.
+/// Writes numbers in single precision: little-endian, as base64. A page only draws them; the full digits are in other files.
 pub(super) fn floats<S: Serializer>(
     values: &impl AsRef<[f64]>,
     serializer: S,

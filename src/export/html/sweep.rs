@@ -85,7 +85,7 @@ pub struct SweepSide {
 pub struct PageEvent {
     /// Where, on the axis of the curves.
     pub at: f64,
-    /// What stands in the columns of the list.
+    /// Texts in the columns of the list, the place first.
     pub cells: Vec<String>,
 }
 
@@ -94,9 +94,9 @@ pub struct PageEvent {
 pub struct PageEvents {
     /// Names of the columns, the place first.
     pub columns: Vec<String>,
-    /// The events, the place first.
+    /// The events that are listed.
     pub rows: Vec<PageEvent>,
-    /// How many there are besides.
+    /// Number of further events, which are not listed.
     pub more: usize,
 }
 
@@ -164,7 +164,7 @@ pub struct SweepPage {
 }
 
 impl SweepPage {
-    /// Returns the page as HTML. Its size is that of the script, some 20 kB, and 16/3 bytes for every number of an array.
+    /// Returns the page as HTML. Its size is that of script and style, some 30 kB, and 16/3 bytes for every number of an array.
     pub fn html(&self) -> Vec<u8> {
         document(&self.title, self, SCRIPT)
     }

@@ -35,7 +35,7 @@ pub struct PagePair {
     pub roller: Option<f64>,
 }
 
-/// The contact frame in the own axes of a profile.
+/// The contact frame in a profile's own axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PageFrame {
     /// C \[mm\].
@@ -84,7 +84,7 @@ pub struct ViewContact {
     pub pressed: Vec<PageLoop>,
     /// The pressures over the grid of the run; `None` unless they were asked for.
     pub pressure: Option<PagePressure>,
-    /// Label and value of what the table beside the pictures says.
+    /// Labels and values of the table beside the pictures.
     pub facts: Vec<[String; 2]>,
     /// The gap along the rail's turning normal; `None` for a run over the tangent plane.
     pub conformal: Option<PageConformal>,
@@ -101,12 +101,12 @@ pub struct PageConformal {
     /// Arc length σ \[mm\] of the rail's point at each ξ, NaN beyond its surface.
     #[serde(serialize_with = "floats")]
     pub sigma: Vec<f64>,
-    /// cos α there, α the angle of the rail's normal from ζ.
+    /// cos α of the rail's point at each ξ, α the angle of its normal from ζ; NaN beyond its surface.
     #[serde(serialize_with = "floats")]
     pub cosine: Vec<f64>,
     /// The exact boundary t = δ cos α: closed loops of ξ, η \[mm\] in turn.
     pub boundary: Vec<PageLoop>,
-    /// Exact area \[mm²\] of that patch on the rail's surface; `None` without an approach.
+    /// Exact area \[mm²\] of the conformal patch on the rail's surface; `None` without an approach.
     pub area: Option<f64>,
 }
 
@@ -137,7 +137,7 @@ pub struct PageLoop(
 pub struct ViewPage {
     /// Title of the scene.
     pub title: String,
-    /// What stands under it: profiles, inclination, radius, gauge and position.
+    /// A line below the title: profiles, inclination, radius, gauge and position.
     pub about: String,
     /// Version of this program.
     pub version: String,

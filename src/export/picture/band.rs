@@ -11,9 +11,9 @@ const SPREAD: Colour = [158, 192, 226];
 /// Left edge and width of the panel \[page units\].
 const LEFT: f64 = 90.0;
 const WIDTH: f64 = 770.0;
-/// Most that the band sticks out \[mm\].
+/// Largest magnified offset of the band from the average \[mm\].
 const LONGEST: f64 = 10.0;
-/// Magnifications.
+/// Magnifications to choose from.
 const MAGNIFIED: [f64; 10] = [1000.0, 500.0, 200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0];
 
 /// A point of the average; lengths in mm.
@@ -60,7 +60,7 @@ impl BandPicture<'_> {
         let heading = format!("Spread along the normal, × {times}; the largest offset is {largest:.3} mm");
         page.heading([LEFT, top, WIDTH, height], &heading);
         for (band, colour) in [(&all, ALL), (&spread, SPREAD)] {
-            // Cells by themselves: in one area, overlaps at hollow corners would be holes.
+            // Each cell is an area of its own: in one area, overlaps at hollow corners would be holes.
             for pair in band.windows(2) {
                 let ring = [pair[0][0], pair[1][0], pair[1][1], pair[0][1]].map(|p| panel.point(p));
                 page.area(&[ring.to_vec()], colour);

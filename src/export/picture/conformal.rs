@@ -14,7 +14,7 @@ const BEYOND: Pen = NORMAL.dashed([2.0, 3.0]);
 
 /// Length of the normals beside the whole profiles as a share of the rail's length over the window, and its bounds \[page units\].
 const LENGTH: (f64, Interval) = (0.5, Interval::new(18.0, 40.0));
-/// Least distance of normals on the rail \[page units\] beside the whole profiles, and in the panel of their own.
+/// Least distance of normals on the rail \[page units\], beside the whole profiles and in the panel of the magnified gap.
 const APART: [f64; 2] = [6.0, 9.0];
 
 /// Longest gap of the magnified fan as a share of the rail's length over the window.
@@ -24,7 +24,7 @@ const LONGEST: f64 = 0.5;
 const OFF: f64 = 14.0;
 /// Sine of α beyond which words beside the rail's line begin or end there, so that they do not cross it.
 const SIDEWAYS: f64 = 0.2;
-/// Free space beside the magnified fan along u and v, as shares of its size; α is written beside its ends.
+/// Free space beside the magnified fan along u and v, as shares of its size, in which α is written beside its ends.
 const AIR: [f64; 2] = [0.1, 0.06];
 
 /// Distance of the rows of the legend \[page units\].
@@ -99,7 +99,7 @@ impl ConformalPicture<'_> {
         range(self.normals.iter().map(|normal| normal.sigma)).width()
     }
 
-    /// Returns normals in equal steps with those at both ends, at least so far apart on the rail \[page units\].
+    /// Returns normals in equal steps with those at both ends, at least `apart` from each other on the rail \[page units\].
     fn some_normals(&self, panel: &Panel, apart: f64) -> impl Iterator<Item = &RailNormal> {
         let last = self.normals.len().saturating_sub(1).max(1);
         let step = panel.scale()[0] * self.length() / last as f64;

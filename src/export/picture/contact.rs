@@ -61,8 +61,8 @@ impl PicturedContact<'_> {
         page.finish(height, &format!("wheelrail {}, scene {}", self.header.version, self.header.scene_hash))
     }
 
-    /// Draws both profiles at true scale in a room below its heading. `below` draws first what the profiles cover, in the part of
-    /// the page that it is given as left, top, width and height.
+    /// Draws both profiles at true scale in a room below its heading. `below` is called first and draws what lies under them; it
+    /// gets their panel and the room left for it as left, top, width and height.
     pub(super) fn profiles(
         &self,
         page: &mut Page,

@@ -24,7 +24,7 @@ const JUMP: f64 = 6.0;
 /// Least jump of a contact, as a share of the range of the values.
 const JUMP_SHARE: f64 = 0.02;
 
-/// Number of changes on each side of a jump that are compared with it. Even two other jumps among them do not hide it.
+/// Number of changes on each side of a jump that are compared with it. It is found even if two other jumps are among them.
 const BESIDE: usize = 3;
 
 /// Height of the panel with the pair \[page units\].
@@ -63,7 +63,7 @@ pub struct CurvesPanel {
 }
 
 impl CurvesPanel {
-    /// Returns the heading, which says so if values are cut off.
+    /// Returns the heading, with a remark if values are cut off.
     pub fn heading(&self) -> String {
         let cut = if self.shown.is_some() { "; flange cut off" } else { "" };
         format!("{}{cut}", self.title)
@@ -104,16 +104,16 @@ pub struct CurvesMap {
     pub values: Vec<Vec<f64>>,
 }
 
-/// A rail and a wheel raised above it, with the points joined at which they touch; all in the rail profile's axes \[x, z\] \[mm\].
+/// A rail and a wheel raised above it, with lines between the points that touch; all in the rail profile's axes \[x, z\] \[mm\].
 #[derive(Debug, Clone, PartialEq)]
 pub struct JoinedPair {
     /// The rail's profile.
     pub rail: Vec<[f64; 2]>,
     /// The wheel's profile.
     pub wheel: Vec<[f64; 2]>,
-    /// From the point on the rail to that on the wheel, in the order of the positions.
+    /// Lines from the point of contact on the rail to that on the wheel, in the order of the positions.
     pub lines: Vec<[[f64; 2]; 2]>,
-    /// Abscissa of the gauge line.
+    /// Abscissa x of the gauge line \[mm\].
     pub gauge: Option<f64>,
 }
 
@@ -206,7 +206,7 @@ fn borders(values: &[f64]) -> Vec<f64> {
     [low].into_iter().chain(inner).chain([high]).collect()
 }
 
-/// Colours of low, middle and high values: light to dark, which is told apart in grey, too.
+/// Colours of low, middle and high values: light to dark, so that they differ in grey, too.
 const SHADES: [Colour; 3] = [[255, 244, 204], [227, 119, 61], [94, 15, 80]];
 
 /// Returns the colour of a share of the range.

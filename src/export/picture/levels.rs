@@ -62,8 +62,8 @@ pub(super) fn levels(nodes: &Nodes<'_>, approach: f64, panel: &Panel) -> Vec<Lev
     (first..=last).map(level).filter(|level| !level.lines.is_empty()).collect()
 }
 
-/// Writes each level's number where its line is farthest from all others and from the numbers written before. The closed rings
-/// around the patch are on the page, as the lines are.
+/// Writes each level's number where its line is farthest from the neighbouring levels, the rings around the patch and the numbers
+/// written before. The closed rings are in coordinates of the page, as the lines are.
 pub(super) fn label(page: &mut Page, levels: &[LevelLines], rings: &[Vec<[f64; 2]>], panel: &Panel) {
     let mut placed: Vec<[f64; 2]> = Vec::new();
     for (number, level) in levels.iter().enumerate() {

@@ -28,11 +28,11 @@ pub struct TrueContact<'a> {
 /// A gap over a surface with the coordinates (u, η) \[mm\].
 #[derive(Debug)]
 pub(super) struct Map<'a> {
-    /// Letter of the gap.
+    /// Letter of the gap, s or t.
     pub(super) gap: &'a str,
-    /// Letter of u.
+    /// Letter of u, ξ or σ.
     pub(super) along: &'a str,
-    /// What holds on the boundary.
+    /// Equation of the boundary.
     pub(super) boundary: &'a str,
     /// Centres u and η of the solver's cells \[mm\], ascending.
     pub(super) cells: [&'a [f64]; 2],
@@ -73,7 +73,7 @@ impl Map<'_> {
         panel
     }
 
-    /// Returns the lines of a loop where the approach closes the gap: without those along the window, which cut the patch off.
+    /// Returns the lines of a loop on which the approach closes the gap: those along the window, which cut the patch off, are left out.
     fn boundary(&self, panel: &Panel, ring: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
         let edges = self.cells.map(|values| range(values.iter().copied()));
         let along = |a: &[f64; 2], b: &[f64; 2]| {
@@ -145,7 +145,7 @@ impl Map<'_> {
     }
 }
 
-/// Returns the step of values that are equally spaced to three digits; `None` if the steps differ.
+/// Returns the step of values that are equally spaced within 1e-4 of the step; `None` if the steps differ.
 fn even_step(values: &[f64]) -> Option<f64> {
     if values.len() < 2 {
         return None;

@@ -1,5 +1,5 @@
-//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of one over another, of an average, and the charts of the
-//! report. All use one kind of page and one kind of panel.
+//! Draws pictures as SVG: of a patch, of the gap over the rail's surface, of a sweep, of a profile, of a measured profile over its
+//! nominal one, of an average, and the charts of the report. All use one kind of page and one kind of panel.
 
 mod band;
 mod chart;

@@ -10,9 +10,9 @@ const ARROW: Pen = Pen::new(RED, 0.9);
 /// Left edge and width of the panel \[page units\].
 const LEFT: f64 = 90.0;
 const WIDTH: f64 = 770.0;
-/// Length \[mm\] that the longest arrow has at most.
+/// Largest length of a magnified arrow \[mm\].
 const LONGEST: f64 = 12.0;
-/// Magnifications.
+/// Magnifications to choose from.
 const MAGNIFIED: [f64; 9] = [500.0, 200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0];
 /// Length of an arrow's head \[page units\], and the sine and cosine of the angle of its sides, 25°.
 const HEAD: f64 = 5.0;
@@ -29,7 +29,7 @@ pub struct OverlayPicture<'a> {
     pub nominal: &'a [[f64; 2]],
     /// The measured curve \[x, z\] \[mm\].
     pub measured: &'a [[f64; 2]],
-    /// Points of the nominal, each with that of the measured curve on its normal \[mm\].
+    /// Points of the nominal, each with the point of the measured curve on its normal \[mm\].
     pub differences: &'a [[[f64; 2]; 2]],
 }
 
@@ -69,7 +69,7 @@ impl OverlayPicture<'_> {
     }
 }
 
-/// Returns the shaft of an arrow and its head; none of an arrow that is shorter than its head.
+/// Returns the shaft of an arrow and its head; an arrow shorter than a head is a shaft alone.
 fn drawn(panel: &Panel, [from, to]: &[[f64; 2]; 2]) -> Vec<Vec<[f64; 2]>> {
     let [a, b] = [panel.point(*from), panel.point(*to)];
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);

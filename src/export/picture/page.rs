@@ -129,7 +129,7 @@ impl Page {
         }
     }
 
-    /// Writes one line of words with its base line at a point; empty words leave no trace.
+    /// Writes one line of words with its base line at a point; nothing if there are no words.
     pub(super) fn text(&mut self, at: [f64; 2], text: impl Display, words: Words) {
         self.written(at, &text.to_string(), words, "");
     }
@@ -188,7 +188,7 @@ fn hex([red, green, blue]: Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Escapes text for XML. Control characters and two more that XML does not know are dropped.
+/// Escapes text for XML. Control characters, and two others that XML does not allow, are dropped.
 fn escape(text: &str) -> String {
     let text: String = text.chars().filter(|c| !c.is_control() && !"\u{fffe}\u{ffff}".contains(*c)).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")

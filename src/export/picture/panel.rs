@@ -133,7 +133,7 @@ impl Panel {
         page.upright([x - widest.max(33.0) - 13.0, y + h / 2.0], names[1], BODY.middle());
     }
 
-    /// Writes a value of its own at the ticks of u, above the frame, and the name of these values to the left of them.
+    /// Writes the values of another quantity at the ticks of u, above the frame, and its name to the left of them.
     pub(super) fn above(&self, page: &mut Page, name: &str, value: impl Fn(f64) -> String) {
         let [x, y, w, _] = self.place;
         let ticks = ticks_of(self.u, w / 45.0, 0).into_iter();
@@ -146,7 +146,7 @@ impl Panel {
         page.text([x - 26.0, y - 10.0], name, BODY.end());
     }
 
-    /// Draws a bar of a round length along u, with its right end at `end` \[page units\]. Returns the x of its left end.
+    /// Draws a bar of a round length along u, at most `longest`, with its right end at `end` \[page units\]. Returns the x of its left end.
     pub(super) fn scale_bar(&self, page: &mut Page, end: [f64; 2], longest: f64) -> f64 {
         let scale = self.scale()[0];
         let length = round_below(longest / scale);
@@ -163,7 +163,7 @@ impl Panel {
     }
 }
 
-/// Returns the smallest range that holds all finite values, widened to a length if they are equal; 0 to 1 if
+/// Returns the smallest range that holds all finite values, widened by 0.5 to both sides if they are equal; 0 to 1 if
 /// there are none.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> Interval {
     let all = extremes(values);
@@ -179,8 +179,8 @@ pub(super) fn extremes(values: impl Iterator<Item = f64>) -> Interval {
     Interval::around(values.filter(|value| value.is_finite()))
 }
 
-/// Returns a range with free space at both ends: `share` of its length, or `least` if that is more. A constant with
-/// rounding errors then appears as a line.
+/// Returns a range with free space at both ends: `share` of its length, or `least` if that is more, so that a constant with
+/// rounding errors appears as a line.
 pub(super) fn airy(range: Interval, share: f64, least: f64) -> Interval {
     range.grown((share * range.width()).max(least))
 }
@@ -207,7 +207,7 @@ pub(super) fn power_for(largest: f64) -> i32 {
     if !power.is_finite() || (-2.0..6.0).contains(&power) { 0 } else { 3 * (power / 3.0).floor() as i32 }
 }
 
-/// Numbers in words from here on are written without a power of ten.
+/// Least number that is written in words without a power of ten.
 const PLAIN: f64 = 1e-4;
 
 /// Returns a positive number with so many significant digits, without zeros at its end; small ones with a power of ten. What has
@@ -236,7 +236,7 @@ fn ticks_of(range: Interval, most: f64, power: i32) -> Ticks {
     // Rounding down takes off up to a factor of 2.5.
     let mut step = round_below(2.5 * range.width() / most);
     let mut values = multiples(range, step);
-    // Half the range contains two multiples, which is at most three or four steps down the ladder 1, 2, 5.
+    // A step of half the range has two multiples in it; it is at most three or four steps down the ladder 1, 2, 5.
     for _ in 0..LADDER {
         if values.len() >= 2 {
             break;

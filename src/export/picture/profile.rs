@@ -107,7 +107,7 @@ impl ProfilePicture<'_> {
     }
 }
 
-/// Returns a range that contains 0, with 5 % of free space. Values in µm and 1/m have no digits beyond the sixth.
+/// Returns a range that contains 0, with 5 % of free space, at least 1e-6: smaller values in µm and 1/m are rounding errors.
 fn about_zero(range: Interval) -> Interval {
     airy(range.with(0.0), 0.05, 1e-6)
 }

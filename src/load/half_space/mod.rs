@@ -20,8 +20,8 @@ use influence::Influence;
 pub use pressures::{Largest, Pressures};
 use settle::System;
 
-/// Cells along ξ and along η of the box around a region: the load of Hertz's ellipse is then right to 0.2 %. Profiles have
-/// what is not Hertz's along ξ.
+/// Number of cells along ξ and along η of the box around a region: the load of Hertz's ellipse is then right to 0.2 %. There are more
+/// along ξ, where the gap of profiles differs from Hertz's.
 const CELLS: [usize; 2] = [32, 16];
 
 /// A region of contact whose pressures are not known: its cells, and how far the bodies overlap in them.
@@ -66,7 +66,7 @@ impl HalfSpace {
         Ok(Self { cells, depth, start })
     }
 
-    /// Lets the search begin at the pressures of another approach on as many cells; others are left alone.
+    /// Lets the search begin at the pressures of another approach. Pressures on another number of cells are ignored.
     pub fn beginning_at(mut self, known: &Pressures) -> Self {
         if known.cells.count == self.cells.count {
             self.start.copy_from_slice(&known.relative);
@@ -74,7 +74,7 @@ impl HalfSpace {
         self
     }
 
-    /// Puts the region where no other one is.
+    /// Places the region by itself, so that no other region presses upon it.
     pub fn alone(self) -> Located {
         Located { region: self, middle: Point3::origin(), normal: Vector3::z() }
     }
@@ -112,7 +112,7 @@ pub struct Located {
     pub normal: Vector3<f64>,
 }
 
-/// Cells up to which pressures are looked for without those on wider cells.
+/// Number of cells up to which the search needs no pressures on wider cells to begin with.
 const FEW_CELLS: usize = 1024;
 
 /// Solves one half-space for its pressures, and on cells twice as wide for [`Pressures::largest_error`]. Tolerance, modulus and
@@ -168,9 +168,10 @@ pub fn on_wider_cells(solved: &Pressures, tolerance: f64) -> Result<Pressures> {
 
 /// Solves half-spaces that press upon each other for their pressures; `modulus` is E* \[N/mm²\].
 ///
-/// No condition of contact is violated by more than `tolerance` of δ. The load of an ellipse then errs by less than 3/2 of that, the
-/// largest pressure by 5 times as much. Cells add to it 0.2 % of the load and 1 % of the largest pressure for 32 × 16 over the box of a
-/// patch, less with the square of their sides. Other regions count by their whole force, F cos γ/(π E* r) at the middle, with γ between the normals.
+/// No condition of contact is violated by more than `tolerance` of δ. The load of an ellipse then errs by less than 3/2 `tolerance`, the
+/// largest pressure by 5 `tolerance`. Cells add 0.2 % of the load and 1 % of the largest pressure for 32 × 16 over the box of a patch,
+/// less with the square of their sides. Another region counts by its whole force: it displaces this one by F cos γ/(π E* r), with r
+/// between the middles and γ between the normals.
 /// Cost: 10 to 20 products for 32 × 16 cells, 4 µs each; 20 to 40 for 200 × 200, 1 ms each.
 /// Degenerate: no pressure where s < δ in no cell.
 ///
@@ -211,8 +212,8 @@ pub fn press(regions: &[Located], tolerance: f64, modulus: f64) -> Result<Vec<Pr
     Ok(each.collect())
 }
 
-/// Gives cos γ/r \[1/mm\] of two regions with γ between their normals: what the force of one displaces the other by along its
-/// normal. 0 of one and itself, and of normals more than 90° apart.
+/// Gives cos γ/r \[1/mm\] of two regions with γ between their normals: the displacement of one along its normal under a force π E* on the
+/// other. 0 of a region and itself, and of normals more than 90° apart.
 fn nearness(a: &Located, b: &Located) -> f64 {
     let distance = (a.middle - b.middle).norm();
     if distance > 0.0 { a.normal.dot(&b.normal).max(0.0) / distance } else { 0.0 }

@@ -2,7 +2,7 @@
 
 use super::cells::Cells;
 
-/// Relative error of the largest pressure for a violation of contact's conditions relative to δ: seen up to 4 on ellipses.
+/// Relative error of the largest pressure per violation of contact's conditions relative to δ; up to 4 was seen on ellipses.
 const UNSETTLED: f64 = 5.0;
 
 /// The largest pressure of a region.
@@ -10,7 +10,7 @@ const UNSETTLED: f64 = 5.0;
 pub struct Largest {
     /// p \[N/mm²\].
     pub pressure_n_per_mm2: f64,
-    /// Where: ξ and η \[mm\].
+    /// ξ and η of its place \[mm\].
     pub at_mm: [f64; 2],
 }
 
@@ -19,7 +19,7 @@ pub struct Largest {
 pub struct Pressures {
     /// The cells.
     pub cells: Cells,
-    /// What the other regions lower the surface by \[mm\], ≥ 0: the part of δ that this one's own pressures do not close.
+    /// Displacement of the surface under the other regions \[mm\], ≥ 0: the part of δ that this region's own pressures do not close.
     pub lowered: f64,
     /// p/(π E*) of every cell \[1\], ≥ 0, at i_ξ · n_η + i_η.
     pub(super) relative: Vec<f64>,
@@ -66,7 +66,7 @@ impl Pressures {
         largest
     }
 
-    /// Gives the true contact area \[mm²\]: what the contour of p², which falls to the edge nearly as a line, surrounds.
+    /// Gives the true contact area \[mm²\]: that inside the contour p² = 0, as p² falls nearly linearly towards the edge.
     pub fn contact_area(&self) -> f64 {
         let ([columns, _], squares) = self.squares_to_edges();
         let rows = squares.len() / columns.len();
@@ -79,8 +79,8 @@ impl Pressures {
         cells * self.cells.area()
     }
 
-    /// Gives p² \[1\] at the middles of the cells and of one more around them all, with ξ and η \[mm\] there, at i_ξ · n_η + i_η. It falls to
-    /// the edge of the contact nearly as a line, and beyond goes on as one from the two last cells: the contact ends where it is 0.
+    /// Gives ξ and η \[mm\], and p² \[1\] at i_ξ · n_η + i_η, at the middles of the cells and of one more row of cells all around. p² falls
+    /// nearly linearly towards the edge of the contact, where it is 0; beyond, the line through the last two cells continues it.
     pub fn squares_to_edges(&self) -> ([Vec<f64>; 2], Vec<f64>) {
         let [columns, rows] = self.cells.count.map(|count| count as isize);
         let most = self.relative.iter().fold(0.0, |most: f64, p| most.max(p * p));
@@ -109,11 +109,11 @@ impl Pressures {
         (places, along.flat_map(|i| across.clone().map(move |j| [i, j])).map(|[i, j]| value(i, j)).collect())
     }
 
-    /// Estimates the error of the largest pressure \[N/mm²\] from that on cells twice as wide, what the search left, and what the top of the
-    /// parabolas adds to the cells: 1 % beside a jump of curvature, where pressures have a corner.
+    /// Estimates the error of the largest pressure \[N/mm²\] from that on cells twice as wide, the violation that the search left, and the
+    /// height of the parabolas' top over the largest cell: 1 % beside a jump of curvature, where pressures have a corner.
     ///
-    /// It is some three times the error where pressures are smooth, and about the error where s has a jump of curvature. At a kink of
-    /// s the pressure has no bound, and grows with every finer grid.
+    /// The estimate is some three times the error where pressures are smooth, and about the error where the curvature of s jumps. At a
+    /// kink of s the pressure has no bound, and grows with every finer grid.
     pub fn largest_error(&self, wider: &Self) -> f64 {
         let [here, there] = [self, wider].map(|pressures| pressures.largest().pressure_n_per_mm2);
         let of_cells = self.unit * self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
@@ -121,8 +121,8 @@ impl Pressures {
     }
 }
 
-/// Gives the part of a unit square where a function is positive, from its values at the corners in their order around: of the polygon
-/// through the corners where it is, and the zeros of lines along the sides.
+/// Gives the share of a unit square in which a function is positive, from its values at the corners in their order around: the area of
+/// the polygon through the positive corners and the zeros of linear interpolation along the sides.
 fn positive_share(corners: [f64; 4]) -> f64 {
     const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     if corners.iter().all(|value| *value > 0.0) {

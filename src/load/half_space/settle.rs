@@ -7,7 +7,7 @@ use super::influence::Influence;
 /// Steps of conjugate gradients after which they are given up; 200² cells take some 40, and a region of several lobes 80.
 const MOST_STEPS: usize = 400;
 
-/// Share of its depth below which what a region has left to close counts as this share: its load is a thousandth of what it would
+/// Least overlap that a region's own pressures have to close, as a share of its depth. Its load is then a thousandth of what it would
 /// carry alone.
 const SHALLOW: f64 = 0.01;
 
@@ -17,14 +17,14 @@ pub(super) struct System {
     pub influences: Vec<Influence>,
     /// Area of a cell of every region \[mm²\].
     pub areas: Vec<f64>,
-    /// What a force π E* on one region displaces another one by \[1/mm\], by row; 0 of a region and itself.
+    /// Displacement of the region of each row under a force π E* on that of each column \[1/mm\]; 0 of a region and itself.
     pub nearness: Vec<f64>,
 }
 
-/// What conjugate gradients found.
+/// The end of a search by conjugate gradients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SettledPressures {
-    /// Largest violation of contact's conditions, relative to the approach of its region.
+    /// Largest violation of contact's conditions, relative to the overlap that its region's own pressures have to close.
     pub violation: f64,
     /// Steps taken.
     pub steps: usize,
@@ -34,7 +34,7 @@ pub(super) struct SettledPressures {
 struct SolverVectors {
     /// u(p) − depth \[mm\]: 0 where pressed, ≥ 0 elsewhere at the end.
     residual: Vec<f64>,
-    /// The direction, and the displacements that it causes.
+    /// Search direction \[1\], and the displacements under it \[mm\] in `response`.
     direction: Vec<f64>,
     response: Vec<f64>,
 }
@@ -43,8 +43,8 @@ impl System {
     /// Finds the pressures p/(π E*) ≥ 0 with u(p) = depth where p > 0 and u(p) ≥ depth elsewhere; `depth` is the overlap δ − s of
     /// every cell \[mm\], at most 0 where there is none. The search begins at `pressure`, scaled to the depth.
     ///
-    /// It ends when no condition is violated by more than `tolerance` of its region's approach. By Betti the load then errs
-    /// by less than `tolerance` · d ln F/d ln δ, which is 3/2 for an ellipse.
+    /// It ends when no condition is violated by more than `tolerance` of its region's approach. By Betti's theorem the load then errs by
+    /// less than `tolerance` · d ln F/d ln δ, which is 3/2 for an ellipse.
     /// Cost: a product for each step, and two where cells lose or gain contact.
     pub fn settle(&mut self, depth: &[f64], pressure: &mut [f64], tolerance: f64) -> SettledPressures {
         let mut search = self.begin(depth, pressure);
@@ -126,7 +126,7 @@ impl System {
         }
     }
 
-    /// Gives what the other regions displace every one by \[mm\].
+    /// Gives the displacement of every region under the forces on the others \[mm\].
     pub fn far(&self, pressure: &[f64]) -> Vec<f64> {
         let ranges = self.ranges();
         let force = |(cells, area): (&Range<usize>, &f64)| area * pressure[cells.clone()].iter().sum::<f64>();

@@ -1,13 +1,14 @@
 //! The swept body above one that varies, and the vertical gap between the two with its slopes and curvatures.
 //!
-//! Over a rail that varies this is a wheel of revolution. Over a wheel that varies it is an extruded rail, with the world upside down:
-//! z counts downward then, for both bodies, so that the rail is above the wheel.
+//! Over a rail that varies, this is a wheel of revolution. Over a wheel that varies, it is an extruded rail, and all is upside down: z
+//! counts downward, for both bodies, so that the rail is above the wheel.
 
 use crate::lofted::Laid;
 use crate::profile::{Section, Side};
 use crate::search::locus::Attitude;
 
-/// Most steps to the swept body along a vertical line. Without roll one is enough; with it each gains a factor of roll × slope.
+/// Most steps to the swept body along a vertical line. Without roll one is enough; with roll each reduces the error by a factor of
+/// roll × slope.
 const STEPS: usize = 60;
 
 /// A swept body at one attitude, its profile's origin on the level of the other body's.
@@ -19,7 +20,7 @@ pub(super) struct SweptAbove<'a> {
     pub attitude: &'a Attitude,
     /// The body below, which varies: a rail along the track, or a wheel around its axle, upside down under the rail.
     pub varying: Side,
-    /// Distance of the axle about which the profile is swept \[mm\]: R of a wheel, infinite for a rail.
+    /// Distance from the axle about which the profile is swept to the profile's origin \[mm\]: R of a wheel, infinite for a rail.
     pub radius: f64,
     /// Upward direction of the track in the swept body's axes.
     pub up: [f64; 3],
@@ -38,11 +39,11 @@ pub(super) struct PointAbove {
     pub curvature: f64,
     /// ∂/∂x and ∂/∂y of the body's height, in its axes.
     pub slopes: [f64; 2],
-    /// ∂²/∂x², ∂²/∂x∂y, ∂²/∂y² of it \[1/mm\].
+    /// ∂²/∂x², ∂²/∂x∂y, ∂²/∂y² of the body's height \[1/mm\].
     pub bends: [f64; 3],
 }
 
-/// Turns z over: the world upside down.
+/// Turns a vector upside down: reverses z.
 pub(super) fn upside_down([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, y, -z]
 }
@@ -76,7 +77,7 @@ impl<'a> SweptAbove<'a> {
         Self { section, attitude, varying, radius, up }
     }
 
-    /// Turns a vector of the varying body's axes into these.
+    /// Turns a vector of the varying body's axes into the swept body's.
     pub fn turned(&self, v: [f64; 3]) -> [f64; 3] {
         match self.varying {
             Side::Rail => into_wheel(self.attitude, v),
@@ -84,7 +85,7 @@ impl<'a> SweptAbove<'a> {
         }
     }
 
-    /// Turns a direction of these axes that points up, out of the varying body, into an upward one of the rail's.
+    /// Turns a direction of the swept body's axes that points out of the varying body into an upward one of the rail's axes.
     pub fn upward(&self, v: [f64; 3]) -> [f64; 3] {
         match self.varying {
             Side::Rail => out_of_wheel(self.attitude, v),
@@ -92,7 +93,7 @@ impl<'a> SweptAbove<'a> {
         }
     }
 
-    /// Takes a point of the varying body's axes into these \[mm\]; y of a rail counts from the middle of the axle.
+    /// Takes a point of the varying body's axes into the swept body's \[mm\]; y of a rail counts from the middle of the axle.
     pub fn seen(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let Attitude { offset, along, .. } = *self.attitude;
         match self.varying {
@@ -104,7 +105,7 @@ impl<'a> SweptAbove<'a> {
         }
     }
 
-    /// How the varying body's surface lies in its own axes; `along` \[mm\] of it is under the middle of the axle.
+    /// Tells how the varying body's surface lies in its own axes; `along` \[mm\] of it is under the middle of the axle.
     pub fn laid(&self, along: f64) -> Laid {
         match self.varying {
             Side::Rail => Laid::Along(along),
@@ -112,12 +113,12 @@ impl<'a> SweptAbove<'a> {
         }
     }
 
-    /// Rounding of a gap \[mm\].
+    /// Gives the rounding of a gap \[mm\].
     pub fn rounding(&self) -> f64 {
         16.0 * f64::EPSILON * self.attitude.radius
     }
 
-    /// Finds the swept body's point above a point of its axes, or below; `None` where there is none.
+    /// Finds the swept body's point vertically above or below a point of its axes; `None` where there is none.
     pub fn above(&self, from: [f64; 3]) -> Option<PointAbove> {
         let mut gap = 0.0;
         let size = self.attitude.radius + from[0].abs();
@@ -139,7 +140,7 @@ impl<'a> SweptAbove<'a> {
         None
     }
 
-    /// The lower side at (x, y) of the body's axes.
+    /// Finds the lower side of the swept body at (x, y) of its axes; the gap is left at 0.
     fn over(&self, x: f64, y: f64) -> Option<PointAbove> {
         let branch = self.section.branch_at(x)?;
         let (station, curvature) = branch.station_and_curvature(branch.parameter(x));

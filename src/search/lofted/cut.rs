@@ -2,10 +2,10 @@
 
 use crate::lofted::{Loft, LoftStrip};
 
-/// Most steps to the place around an axle at which a plane cuts a circle. The radius varies by far less than it is: each gains two digits.
+/// Most steps to the place around an axle at which a plane cuts a circle. As the radius varies little around it, each gains two digits.
 const STEPS: usize = 8;
 
-/// Step \[rad\] that moves a point of a wheel by less than rounding.
+/// Step \[rad\] at which the place is found: it moves a point of a wheel by less than 1e-9 mm.
 const SETTLED: f64 = 1e-12;
 
 /// Distance \[mm\] below which the ends of two parts are one point: rounding.
@@ -16,7 +16,7 @@ const ONE_POINT: f64 = 1e-9;
 pub enum Cut {
     /// Of a rail: what the plane cuts.
     Rail(Vec<Vec<[f64; 2]>>),
-    /// Of a wheel: the profile of the wheel of revolution that the plane cuts alike. A point of it is R − z from the axle.
+    /// Of a wheel: the profile of a wheel of revolution with the same cut. A point of it is R − z from the axle.
     Wheel(Vec<Vec<[f64; 2]>>),
 }
 
@@ -44,10 +44,10 @@ pub(super) fn cut_wheel(loft: &Loft, radius: f64, lowest: f64, yaw: f64, ahead: 
     }))
 }
 
-/// The curve of a share of a part's arc length: its point \[x, z\] at y \[mm\]; `None` where the part is interrupted.
+/// The curve along y of a share of a part's arc length: its point \[x, z\] at y \[mm\]; `None` where the part is interrupted.
 type PartCurve<'a> = &'a dyn Fn(f64) -> Option<[f64; 2]>;
 
-/// Takes one point of every such curve, part by part; a curve without a point ends a piece, and parts that meet are one piece.
+/// Lists one point of every curve of equal share, part by part. A curve without a point ends a piece, and parts that meet are one piece.
 fn pieces(loft: &Loft, point: impl Fn(PartCurve<'_>) -> Option<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
     let parts = loft.strips.iter().map(|strip| strip.part + 1).max().unwrap_or(0);

@@ -36,17 +36,17 @@ use settle::{FoundPlace, SettledPlace, StripGap, apart};
 /// Largest run of a part of the swept profile \[mm\]: its chord is off by 2.4 µm on a 13 mm radius.
 const SWEPT_PARTS: f64 = 0.5;
 
-/// Most such parts of a profile of an unusual size.
+/// Most parts of a swept profile of unusual size.
 const MOST_PARTS: f64 = 4096.0;
 
 /// Distance \[mm\] below which two places of Newton's method are one.
 const ONE_PLACE: f64 = 1e-6;
 
-/// Most pairs of parts that one search looks at: of some hundred bytes each. A search looks at some hundreds, and at some ten thousand
-/// with near misses of a millimetre.
+/// Most pairs of parts that one search looks at, of some hundred bytes each. Searches look at some hundreds of pairs, and at some ten
+/// thousand with near misses of a millimetre.
 const MOST_LOOKED_AT: u64 = 1_000_000;
 
-/// Largest angle \[rad\] from a wheel's lowest meridian at which it is looked at. A flange of 70° under a yaw of 0.3 rad touches at 1.0.
+/// Largest angle \[rad\] from a wheel's lowest meridian that is searched. A flange of 70° under a yaw of 0.3 rad touches at 1.0.
 const WINDOW: f64 = 1.3;
 
 /// A rail and a wheel, one of which varies, prepared for searches.
@@ -59,11 +59,11 @@ pub struct LoftedPair {
     section: Section,
     /// Nominal rolling radius \[mm\].
     radius: f64,
-    /// Angle \[rad\] around which the surface of a wheel goes once about the axle.
+    /// Angle \[rad\] at the middle of the surface of a wheel; every part of the wheel lies within π of it.
     middle: f64,
 }
 
-/// Searches over such a pair; keeps its buffers.
+/// Searches over a pair in which one body varies; keeps its buffers.
 #[derive(Debug, Clone)]
 pub(super) struct LoftedSearch<'a> {
     pair: &'a LoftedPair,
@@ -73,7 +73,7 @@ pub(super) struct LoftedSearch<'a> {
     queue: BinaryHeap<Open>,
     found: Vec<FoundPlace>,
     contacts: Vec<Contact>,
-    /// Whether a search had too many parts to look at; none is made until this is taken back.
+    /// Whether a search had too many parts to look at; no other search is made until this is reset.
     pub gave_up: bool,
     pub work: Work,
 }
@@ -101,7 +101,7 @@ impl PartialOrd for Open {
 }
 
 impl Ord for Open {
-    /// The largest is the one with the least bound; of equal bounds the one that was made first.
+    /// Orders by falling bound, so that the largest has the least bound; of equal bounds the one that was made first is larger.
     fn cmp(&self, other: &Self) -> Ordering {
         let own = |open: &Self| (open.part, open.node);
         other.bound.total_cmp(&self.bound).then_with(|| own(other).cmp(&own(self)))
@@ -117,13 +117,13 @@ impl LoftedPair {
         Self::of(loft, Side::Rail, wheel, [radius, 0.0])
     }
 
-    /// Lowers a single wheel until it touches: the height \[mm\] of its profile's origin over the rail's one, and the contacts of the
-    /// selection, the lowest first. That origin stands at `along` \[mm\] of the list of a rail that varies; one that varies itself is turned
-    /// by `pitch` \[rad\], + forward at the bottom.
+    /// Lowers a single wheel until it touches. Gives the height \[mm\] of its profile's origin over the rail's, and the contacts of the
+    /// selection, the lowest first. That origin is at `along` \[mm\] of the list of a rail that varies; a wheel that varies is turned by
+    /// `pitch` \[rad\], + forward at the bottom.
     ///
     /// # Errors
-    /// A wheel no part of which is over the rail, of the kind [`ErrorKind::NoContact`](crate::ErrorKind::NoContact); a rail that follows
-    /// the wheel's shape all over.
+    /// A wheel no part of which is over the rail, of the kind [`ErrorKind::NoContact`](crate::ErrorKind::NoContact); surfaces that follow
+    /// each other so closely that no places of contact can be told apart.
     pub fn touch(
         &self,
         pose: &Pose,
@@ -141,10 +141,10 @@ impl LoftedPair {
         Ok((height, search.collect(&attitude, height, selection).contacts.to_vec()))
     }
 
-    /// Prepares a pair one body of which varies: that body.
+    /// Prepares a pair in which `varying` stands in place of one body.
     ///
     /// # Errors
-    /// A profile of the other one with no part that faces it.
+    /// A profile of the other body with no part that faces `varying`.
     pub fn of_pair(pair: &Pair, varying: &LoftedBody) -> Result<Self> {
         match varying {
             LoftedBody::Rail(loft) => Self::new(Arc::clone(loft), pair.wheel(), pair.wheel_radius()),
@@ -187,7 +187,7 @@ impl LoftedPair {
         search
     }
 
-    /// Says that so many places touch at once that no search tells them apart.
+    /// Makes the error of bodies that touch at so many places at once that no search tells these apart.
     pub(super) fn too_close(&self) -> Error {
         let (place, other) = match self.varying {
             Side::Rail => ("rail", "wheel"),
@@ -198,13 +198,13 @@ impl LoftedPair {
         Error::new(place, "a surface too close to the other one", expected, advice)
     }
 
-    /// Whether it is the wheel that varies.
+    /// Tells whether it is the wheel that varies.
     pub(super) fn turning_wheel(&self) -> bool {
         self.varying == Side::Wheel
     }
 
-    /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin. That is at `along`
-    /// \[mm\] of a rail's list; of a wheel, yawed by `yaw` \[rad\], −pitch \[rad\] lies lowest.
+    /// Cuts the body that varies by the plane across the track which lies `ahead` \[mm\] of the wheel profile's origin. This origin is at
+    /// `along` \[mm\] of a rail's list; of a wheel, yawed by `yaw` \[rad\], −pitch \[rad\] lies lowest.
     pub(super) fn cut(&self, [along, pitch]: [f64; 2], yaw: f64, ahead: f64) -> Cut {
         match self.varying {
             Side::Rail => cut_rail(&self.loft, along + ahead),
@@ -212,19 +212,19 @@ impl LoftedPair {
         }
     }
 
-    /// Coordinate in a wheel's list \[mm\] of what lies lowest at a pitch \[rad\].
+    /// Gives the coordinate in a wheel's list \[mm\] of what lies lowest at a pitch \[rad\].
     fn lowest(&self, pitch: f64) -> f64 {
         self.radius * turned(-pitch, self.middle)
     }
 
-    /// The other body at an attitude.
+    /// Gives the swept body at an attitude.
     fn over<'a>(&'a self, attitude: &'a Attitude) -> SweptAbove<'a> {
         SweptAbove::new(&self.section, attitude, self.varying)
     }
 }
 
 impl<'a> LoftedSearch<'a> {
-    /// The bodies that it searches over.
+    /// Gives the bodies that it searches over.
     pub fn pair(&self) -> &'a LoftedPair {
         self.pair
     }
@@ -347,7 +347,7 @@ impl<'a> LoftedSearch<'a> {
             return;
         }
         *lowest = lowest.min(settled.above.gap);
-        // Of a stretch with one gap, as under a cylinder, the first place counts.
+        // Only the first place of a stretch with one gap, as under a cylinder, counts.
         let known = |found: &FoundPlace| {
             let level = (found.settled.above.gap - settled.above.gap).abs() <= rounding;
             let stretch = found.settled.stretch && settled.stretch && level;
@@ -358,7 +358,7 @@ impl<'a> LoftedSearch<'a> {
         }
     }
 
-    /// Tells whether the surface goes on beyond the end of the strip at which a place lies, to a smaller gap.
+    /// Tells whether the surface goes on to a smaller gap beyond the end of the strip at which a place lies.
     fn goes_on(&self, over: &SweptAbove<'_>, strip: usize, settled: &SettledPlace) -> bool {
         let strips = &self.pair.loft.strips;
         let (own, [u, y]) = (&strips[strip], settled.place);

@@ -6,13 +6,14 @@ use crate::numerics::interval::Interval;
 use crate::profile::Side;
 use crate::search::bounds::Bounds;
 
-/// Change \[mm\] of x and z across and along of a part from which Newton's method starts.
+/// Largest change of x or z \[mm\], across and along, over a part from which Newton's method starts.
 const SMALL_ACROSS: f64 = 0.1;
 
-/// Its length along the track or around the wheel \[mm\]: a wheel rises by 0.3 µm over it.
+/// Largest length \[mm\], along the track or around the wheel, of a part from which Newton's method starts: a wheel rises by 0.3 µm over
+/// it.
 const SMALL_ALONG: f64 = 1.0;
 
-/// Length of several cells over their size above which they are halved along the track.
+/// Ratio of length to size above which a part of several cells is halved along the track.
 const LONG: f64 = 8.0;
 
 /// Length \[mm\] along the track above which a part is bounded from the nearest point to the wheel's lowest meridian, not from its
@@ -46,7 +47,7 @@ pub(super) struct BoundPart {
     pub part: VaryingPart,
     /// Points whose hull holds the part: control points, or corners of a box.
     points: [[f64; 3]; 16],
-    /// How many there are.
+    /// Number of these points.
     count: usize,
     /// Reach of the abscissa at which vertical lines through the part meet the level of the swept profile \[mm\].
     abscissa: Interval,
@@ -54,7 +55,7 @@ pub(super) struct BoundPart {
     along: Interval,
     /// Larger extent of x or z \[mm\].
     pub size: f64,
-    /// Change of x or z across and along, as multiples of those of a small part.
+    /// Change of x or z across and along, as multiples of the largest of a small part; of several cells, size and length over [`LONG`].
     changes: [f64; 2],
     /// Of a wheel's part: how it is wrapped around the axle.
     wrap: Option<Wrap>,
@@ -62,18 +63,18 @@ pub(super) struct BoundPart {
     pub settled: bool,
 }
 
-/// A part of a wheel on the tangent plane at its middle, and how far it may be off that.
+/// A part of a wheel on the tangent plane at its middle, with bounds of the error of that.
 #[derive(Debug, Clone, Copy)]
 struct Wrap {
     /// Direction out from the axle, in the swept body's axes.
     out: [f64; 3],
     /// Larger extent of x or of the distance from the axle \[mm\].
     size: f64,
-    /// Along the plane around the axle \[mm\].
+    /// Largest error along the plane, around the axle \[mm\].
     around: f64,
-    /// Within it, towards the axle \[mm\].
+    /// Largest distance of the surface from the plane, towards the axle \[mm\].
     inward: f64,
-    /// Of the differences of its control points \[mm\]: across, along.
+    /// Largest errors of the differences of the part's control points \[mm\]: across, along.
     turns: [f64; 2],
 }
 
@@ -82,12 +83,12 @@ impl VaryingPart {
         loft.strips[self.strip].bay(self.bay)
     }
 
-    /// The cell, of a part of one.
+    /// Gives the cell of a part of one cell; `None` for a part of several.
     pub fn cell(&self, loft: &Loft) -> Option<usize> {
         self.bay(loft).only_cell(self.node)
     }
 
-    /// Parameters (u, y) of its middle.
+    /// Gives the parameters (u, y) of its middle.
     pub fn middle(&self, loft: &Loft) -> [f64; 2] {
         let u = match self.cell(loft) {
             Some(cell) => cell as f64 + self.shares.middle(),
@@ -133,7 +134,7 @@ impl VaryingPart {
         }
         let [x, along, z, abscissa] = reach;
         let size = match wrap {
-            // A long part of a wheel is high for its length.
+            // The corners around a long part of a wheel stand high because of its length.
             Some(wrap) if count == 8 => wrap.size,
             _ => x.width().max(z.width()),
         };
@@ -212,15 +213,15 @@ impl VaryingPart {
 }
 
 impl Wrap {
-    /// Takes a surface that may be off the part's bicubic by so much \[mm\]: the slopes over a cell are off by 3.1 times that at most,
-    /// and control points differ by a third of the slopes.
+    /// Widens the bounds for a surface that may be off the part's bicubic by this much \[mm\]: slopes over a cell are off by at most 3.1
+    /// times that, and control points differ by a third of the slopes.
     fn wider(self, off: f64) -> Self {
         Self { around: self.around + off, turns: self.turns.map(|by| by + 2.0 * off), ..self }
     }
 }
 
 impl BoundPart {
-    /// Tells whether Newton's method may start from it: it is of one cell, and small in both directions.
+    /// Tells whether Newton's method may start from the part: it lies in one cell, and is small in both directions.
     pub fn is_small(&self) -> bool {
         self.count == 16 && self.changes.iter().all(|change| *change <= 1.0)
     }

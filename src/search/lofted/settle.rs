@@ -13,7 +13,7 @@ const LONGEST: [f64; 2] = [2.0, 10.0];
 /// Step at which a place is found, in the same units: the gap then errs by its square.
 const FOUND: [f64; 2] = [1e-9, 1e-8];
 
-/// Halvings of a step that does not lower the gap.
+/// Most halvings of a step that does not lower the gap.
 const HALVINGS: usize = 30;
 
 /// A place of the varying body with the swept one above it.
@@ -23,7 +23,7 @@ pub(super) struct SettledPlace {
     pub place: [f64; 2],
     /// The varying body's point.
     pub below: SpacePoint,
-    /// The swept one's.
+    /// The swept body's point above it.
     pub above: PointAbove,
     /// Whether it lies at an end of the strip: across, along.
     pub at_end: [bool; 2],
@@ -50,14 +50,15 @@ pub(super) struct FoundPlace {
 }
 
 impl StripGap<'_> {
-    /// The varying body's point at a place, and the other one's above it; `None` where that does not reach.
+    /// Finds the varying body's point at a place, and the swept body's above it; `None` where the swept body does not reach.
     pub fn at(&self, [u, y]: [f64; 2]) -> Option<(SpacePoint, PointAbove)> {
         let below = self.over.laid(self.along).point(self.strip.point(u, y));
         let above = self.over.above(self.over.seen(below.at))?;
         Some((below, above))
     }
 
-    /// Gradient and second derivatives (uu, uy, yy) of the gap with respect to a place; the second ones hold where the gradient is 0.
+    /// Computes gradient and second derivatives (uu, uy, yy) of the gap with respect to a place; the latter are exact where the gradient
+    /// is 0.
     pub fn derivatives(&self, below: &SpacePoint, above: &PointAbove) -> ([f64; 2], [f64; 3]) {
         let ([a, b], [aa, ab, bb]) = (above.slopes, above.bends);
         // The height of the swept body less z, along a direction of its axes.
@@ -120,8 +121,8 @@ impl StripGap<'_> {
         Some(SettledPlace { place, below, above, at_end: [false; 2], kink: true, stretch: false })
     }
 
-    /// Moves a place on a stretch with one gap to the strip's beginning, if that has the same gap: whatever part of a flat Newton's method
-    /// started from, it ends at one place.
+    /// Moves a place on a stretch with one gap to the strip's beginning, if that has the same gap: from all parts of the stretch Newton's
+    /// method then ends at one place.
     fn at_beginning(&self, mut settled: SettledPlace, level: [bool; 2]) -> SettledPlace {
         let begin = [0.0, self.strip.reach().low];
         for k in (0..2).filter(|&k| level[k]) {
@@ -143,7 +144,7 @@ impl StripGap<'_> {
         [least(gradient[0], bends[0], LONGEST[0]), least(gradient[1], bends[2], LONGEST[1])]
     }
 
-    /// Newton's step along a kink of the swept body: at one abscissa of its profile.
+    /// Computes Newton's step along a kink of the swept body: at one abscissa of its profile.
     fn slide(&self, below: &SpacePoint, [f, g]: [f64; 2], [a, b, c]: [f64; 3]) -> [f64; 2] {
         let run = |v: [f64; 3]| self.over.turned(v)[0];
         let aside = -run(below.along) / run(below.across);
@@ -152,7 +153,7 @@ impl StripGap<'_> {
     }
 }
 
-/// Newton's step down, over the coordinates that are not held; along the gradient where the second derivatives do not tell.
+/// Computes Newton's step down, over the coordinates that are not held; the longest step downwards where the gap is not convex.
 fn descent([f, g]: [f64; 2], [a, b, c]: [f64; 3], held: [bool; 2]) -> [f64; 2] {
     let alone = |slope: f64, bend: f64, longest: f64| match slope {
         0.0 => 0.0,
@@ -174,7 +175,7 @@ fn descent([f, g]: [f64; 2], [a, b, c]: [f64; 3], held: [bool; 2]) -> [f64; 2] {
     }
 }
 
-/// Distance \[mm\] of two places, the larger one of both directions.
+/// Gives the distance \[mm\] of two places: the larger one of both directions.
 pub(super) fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
     (SPACING * (a[0] - b[0]).abs()).max((a[1] - b[1]).abs())
 }

@@ -1,7 +1,7 @@
 //! Equivalent conicity by integration of the wheelset's kinematic movement, as in EN 15302.
 //!
-//! A wheelset that rolls without slip moves by y″ = −Δr(y)/(e r₀), primes along the track, e the distance of the
-//! contact points. A cone of conicity γ has Δr = 2y tanγ and Klingel's wavelength λ, λ² = 2π² e r₀/tanγ. The
+//! A wheelset that rolls without slip moves by y″ = −Δr(y)/(e r₀), with derivatives along the track and e the distance of
+//! the contact points. A cone of conicity γ has Δr = 2y tanγ and Klingel's wavelength λ, λ² = 2π² e r₀/tanγ. The
 //! equivalent conicity of any Δr is that of the cone with the same wavelength at the same amplitude:
 //! tanγ_e = (π/λ)² 2 e r₀. With v² = 2 ∫_y^ŷ Δr the energy integral gives
 //!
@@ -9,7 +9,7 @@
 //! λ = 4 √(e r₀) T,   T = ∫_0^ŷ dy/v        tanγ_e = π²/(8 T²)
 //! ```
 //!
-//! which is free of e and r₀. The yaw is neglected. Where both sides are alike Δr is odd, and a quarter of the movement is
+//! which does not depend on e and r₀. The yaw is neglected. Where both sides are alike Δr is odd, and a quarter of the movement is
 //! enough. Where they are not, the wheelset swings about the displacement y₀ at which Δr = 0, between turning points
 //! of equal energy, and ŷ is half their distance, the convention of EN 15302. T is then the mean of the two
 //! quarters on either side of y₀.
@@ -17,8 +17,8 @@
 //! # Effect of errors of Δr
 //!
 //! An error ε of Δr changes the conicity by the share 2/T ∫_0^ŷ (∫_y^ŷ ε) v⁻³ dy, less than the largest share
-//! ∫_y^ŷ ε/∫_y^ŷ Δr over y. So only the integrals of Δr must be right: bends of micrometres do not count, nor
-//! the place of a hop within a cell of 1e-6 mm.
+//! ∫_y^ŷ ε/∫_y^ŷ Δr over y. So only the integrals of Δr must be right: neither bends of micrometres nor the place
+//! of a hop within a cell of 1e-6 mm matters.
 //!
 //! Δr is continuous except at hops: displacements at which two places of one side touch at once, and the
 //! rolling radius jumps from the first place's to the second's. A hop is a root of the difference of two
@@ -141,8 +141,7 @@ impl Conicity {
     /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was
     /// reached.
     /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth, and three times as many where the sides
-    /// differ; every search of a
-    /// rolling wheelset solves its roll.
+    /// differ; with [`Roll::Solve`] every search solves the roll.
     ///
     /// # Errors
     /// An amplitude that is not a positive number; a given roll, by which the wheelset is held.
@@ -201,8 +200,8 @@ impl Conicity {
         self.centre
     }
 
-    /// Returns the most searches that a table up to an amplitude \[mm\] takes: 15 for every tenth of a
-    /// millimetre.
+    /// Returns the most searches that a table up to an amplitude \[mm\] takes where both sides are alike: 15 for
+    /// every tenth of a millimetre.
     pub fn most_searches(amplitude: f64) -> usize {
         most_searches(amplitude, ACCURACY)
     }

@@ -5,7 +5,7 @@ use crate::numerics::interval::Interval;
 use nalgebra::{Point3, UnitComplex, Vector3};
 use wheelrail_report::random::Random;
 
-/// A surface sampled in space: the wheel's points in track axes with their gap over the rail.
+/// A random pair at a pose; the wheel is sampled in space, in track axes.
 struct RandomScene {
     rail: Profile,
     wheel: Profile,

@@ -6,7 +6,7 @@ use crate::search::position::{Position, Roll};
 use crate::search::wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch};
 use crate::search::{Contact, Selection};
 
-/// The near misses that are looked at: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. With a
+/// The near misses that are considered: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. With a
 /// smaller limit hops would be found by halving; with a larger one rough profiles have hundreds of near
 /// misses. Places within 1 µm of each other are one: a hop that short changes Δr by less than 0.1 µm on a
 /// tread.
@@ -71,8 +71,8 @@ impl<'a> Searched<'a> {
 }
 
 impl Searched<'_> {
-    /// Finds the places at one displacement \[mm\] as the mirror image of the wheelset has them at the opposite one: sides
-    /// change places, and rates with the displacement their sign.
+    /// Finds the places at one displacement \[mm\] as the mirror image of the wheelset has them at the opposite one: the sides are
+    /// swapped, and rates with respect to the displacement change sign.
     ///
     /// # Errors
     /// The errors of [`Searched::at`].
@@ -117,7 +117,7 @@ impl Searched<'_> {
     }
 }
 
-/// Position of the axle's middle, seen from the profiles of one side.
+/// Height of the axle's middle, and position of the rail from it, in the axes of one side.
 struct Arm {
     sign: f64,
     height: f64,

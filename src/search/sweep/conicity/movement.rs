@@ -121,7 +121,7 @@ impl Movement {
         Interval::new(self.knots[cell].y, self.knots[cell + 1].y)
     }
 
-    /// Returns the cell, wider than nothing, in which an amplitude above 0 lies, its end included; `None`
+    /// Returns the cell, of a width above 0, in which an amplitude above 0 lies, its end included; `None`
     /// beyond the last.
     pub(super) fn cell(&self, amplitude: f64) -> Option<usize> {
         let above = self.knots.partition_point(|knot| knot.y < amplitude);

@@ -9,7 +9,7 @@ use crate::error::Result;
 /// Widest cell of the table \[mm\], as in EN 15302.
 const WIDEST: f64 = 0.1;
 
-/// Smallest amplitude \[mm\] for whose conicity the table is refined; smaller amplitudes say how accurate
+/// Smallest amplitude \[mm\] for whose conicity the table is refined; at smaller ones the results say how accurate
 /// they are. Without this limit all searches would go to a jump of Δr at 0, which counts the same for every
 /// amplitude, however small.
 pub(super) const LEAST_AMPLITUDE: f64 = WIDEST;

@@ -373,7 +373,7 @@ fn rough_pairs_agree_with_a_very_fine_table_or_say_by_how_much_not() -> Result<(
     Ok(())
 }
 
-/// The same two sides, but given apart: Δr is odd, and both tables find it.
+/// A wheelset of two equal sides that are given apart: Δr is odd, and both tables find it.
 #[test]
 fn two_sides_that_are_alike_have_the_conicity_of_a_symmetric_wheelset() -> Result<()> {
     let symmetric = system(&reference_rail()?, &standards::wheel("EN15302-A")?)?;
