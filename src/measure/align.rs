@@ -17,11 +17,11 @@ const SIXTY: f64 = 0.866_025_403_784_438_6;
 const OUTER: Interval = Interval::new(-15.0, -5.0);
 /// Sine of the inclination at which a tread ends, 30°.
 const TREAD_END: f64 = 0.5;
-/// Vertical wear \[mm\] from which the fit of a rail starts, the best start counts.
+/// Vertical wear \[mm\] from which fits of a rail start; the best fit counts.
 const STARTS: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
-/// Most pairs of marks that are compared, a second's work; two profiles of 1000 points have two millions.
+/// Largest number of pairs of marks that are compared, a second's work; two profiles of 1000 points have up to four millions.
 const MOST_WORK: usize = 200_000_000;
-/// Root mean square \[mm\] above which what was fitted is no unworn part.
+/// Root mean square \[mm\] above which fitted parts are probably worn.
 const LARGEST_RESIDUAL: f64 = 0.1;
 
 /// Turn \[deg\] above which an alignment is doubted: rails lie inclined by up to 1:20 and are canted a little, instruments are
@@ -33,11 +33,11 @@ const MOST_TURNED: f64 = 5.0;
 pub struct Alignment {
     /// The alignment that was used.
     pub align: Align,
-    /// The same in words, with what was fitted and moved.
+    /// The alignment in words, with what was fitted and moved.
     pub text: String,
     /// Root mean square of the distances \[mm\] of what was fitted; `None` if nothing was.
     pub residual: Option<f64>,
-    /// A doubt about it.
+    /// A doubt about the alignment.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
 }
@@ -47,7 +47,7 @@ pub(super) struct Aligned {
     pub curve: MarkedCurve,
     /// x of the flange back, from which X counts \[mm\]; 0 for rails.
     pub back: f64,
-    /// Why the back lies there only if the file's x = 0 is the taping line.
+    /// Why no flange back was found, if `back` follows from x = 0 as the taping line instead.
     pub no_back: Option<String>,
     pub alignment: Alignment,
 }
@@ -62,7 +62,7 @@ impl Aligned {
 /// Aligns a measured profile.
 ///
 /// # Errors
-/// What the alignment needs and the profile has not, as text.
+/// What the alignment needs and the profile does not have, as text.
 pub(super) fn align(
     profile: &Profile,
     side: Side,

@@ -23,7 +23,7 @@ pub struct AveragePoint {
     pub spread: f64,
     /// Offsets of the lowest and the highest profile along the normal.
     pub range: Interval,
-    /// Number of profiles that are there.
+    /// Number of profiles that have a point on the normal.
     pub count: usize,
 }
 
@@ -32,7 +32,7 @@ pub struct AveragePoint {
 pub struct Average {
     /// Its points from left to right, where at least half of the profiles are.
     pub points: Vec<AveragePoint>,
-    /// Number of profiles that it is of.
+    /// Number of profiles that were averaged.
     pub profiles: usize,
     /// Which profiles are left out and why, and which alignments are doubted.
     pub findings: Vec<String>,
@@ -119,7 +119,7 @@ pub fn average(
     Ok(Average { points, profiles: curves.len(), findings })
 }
 
-/// Puts a wheel that has no nominal at X = 0.
+/// Moves a wheel that has no nominal so that x = 0 is its flange back.
 fn in_common_axes(aligned: Aligned, nominal: bool) -> MarkedCurve {
     if nominal || aligned.back == 0.0 {
         return aligned.curve;
@@ -153,7 +153,7 @@ fn along(points: &[AveragePoint]) -> Vec<Station> {
     (0..points.len()).filter_map(station).collect()
 }
 
-/// Averages curves along the normals of stations, where at least half of them, and two, are.
+/// Averages curves along the normals of stations, where at least half of the curves, and at least two, have a point.
 fn averaged(curves: &[MarkedCurve], stations: &[Station]) -> Vec<AveragePoint> {
     let least = curves.len().div_ceil(2).max(2);
     let mut out = Vec::new();

@@ -4,7 +4,7 @@ use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::profile::{Mark, Profile, Station, trace};
 
-/// Distance of marks \[mm\]. Between two marks the curve is a cubic, off an arc of 3 mm radius by 3e-9 mm.
+/// Distance of marks \[mm\]. Between two marks the curve is a cubic, off an arc of 3 mm radius by 6e-10 mm.
 const STEP: f64 = 0.05;
 
 /// Marks from left to right.
@@ -50,7 +50,7 @@ impl MarkedCurve {
         (0..self.marks.len()).map(move |k| 0.5 * (s((k + 1).min(last)) - s(k.saturating_sub(1))))
     }
 
-    /// Returns the smallest and largest x \[mm\]; infinities of a curve without marks.
+    /// Returns the range of x \[mm\]; empty for a curve without marks.
     pub fn extent(&self) -> Interval {
         Interval::around(self.marks.iter().map(|mark| mark.station.x))
     }

@@ -17,7 +17,7 @@ const LEAST_PART: f64 = 0.5;
 /// has to make. A straight face alone makes none along itself.
 const ARM: f64 = 10.0;
 const LEAST_HOLD: f64 = 0.03;
-/// Passes until a motion is settled: each one leaves the square of the last one's error, or a tenth where the feet slide.
+/// Largest number of passes until a motion is settled: each one leaves the square of the last one's error, or a tenth where the feet slide.
 const MOST_PASSES: usize = 200;
 /// Motion \[mm\] at which a fit is settled, a thousandth of the instrument's resolution.
 const SETTLED: f64 = 1e-6;
@@ -69,10 +69,11 @@ impl NominalFit<'_> {
         Ok(fitted)
     }
 
-    /// Finds the motion that fits all places that fit, from the motion that fits the parts.
+    /// Finds the motion that fits all places near the nominal, from the motion that fits the parts. The places are those within three
+    /// times its residual, within [`FITS`]; they are chosen anew until the motion is settled.
     ///
     /// # Errors
-    /// The errors of [`NominalFit::of_parts`].
+    /// Places that leave a motion free, or at which the fit does not settle; the text says which.
     pub fn of_all(&self, of_parts: FittedMotion) -> Result<FittedMotion, String> {
         let fits = (3.0 * of_parts.rms).clamp(FITS.low, FITS.high);
         let mut fitted = of_parts;

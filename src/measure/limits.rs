@@ -26,7 +26,7 @@ pub struct Limit {
 }
 
 impl Limits {
-    /// Takes the limits of quantities.
+    /// Makes limits from those of quantities by their keys.
     ///
     /// # Errors
     /// A key that is no quantity; limits that are not finite, that contradict each other, or none at all.

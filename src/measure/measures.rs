@@ -1,4 +1,4 @@
-//! What is measured of a profile, with what it is worth.
+//! The measures of a profile, with their sensitivity to the alignment and their spread.
 
 use super::align::Alignment;
 use super::quantity::Quantity;
@@ -32,12 +32,12 @@ impl Measures {
         }
     }
 
-    /// Returns measures without values, and why.
+    /// Returns measures without values, with a finding that says why.
     pub(super) fn none(side: Side, why: String) -> Self {
         Self { findings: vec![why], ..Self::empty(side) }
     }
 
-    /// Takes the diameter of a wheel \[mm\] that its file states: no profile tells it.
+    /// Adds the diameter \[mm\] that the file of a wheel states: no profile tells it. A rail has none.
     #[must_use]
     pub fn with_diameter(mut self, diameter: Option<f64>) -> Self {
         self.values[Quantity::Diameter as usize] = diameter.filter(|_| self.side == Side::Wheel);
@@ -49,12 +49,14 @@ impl Measures {
         self.values[quantity as usize]
     }
 
-    /// Returns the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise, about X = 0 at the tread or the top of rail.
+    /// Returns the largest change of a value if the profile is moved by 0.1 mm, or turned by 0.1° about the tread at X = 0 or the top
+    /// of rail. `None` where such a motion takes the quantity away.
     pub fn if_off(&self, quantity: Quantity) -> Option<f64> {
         self.if_off[quantity as usize]
     }
 
-    /// Returns how far a value spreads under noise or over repeats, in its unit; `None` if neither was asked for.
+    /// Returns how far a value spreads under noise or over repeats, in its unit; `None` if neither was asked for, or
+    /// too few have the quantity.
     pub fn spread(&self, quantity: Quantity) -> Option<&Spread> {
         self.spreads[quantity as usize].as_ref()
     }

@@ -16,7 +16,7 @@ const TURNED_OFF: f64 = OFF * std::f64::consts::PI / 180.0;
 
 /// Gain of metal \[mm\] on a tread or crown above which the alignment is doubted: more than tolerances of new profiles.
 const MOST_GAINED: f64 = 0.5;
-/// The same of a gauge face, to which metal flows from the crown.
+/// Gain of metal \[mm\] on a gauge face above which the alignment is doubted: metal flows to it from the crown.
 const MOST_FLOWN: f64 = 3.0;
 
 /// Measures a profile, right-hand and upright: its flange or gauge side is at smaller x.
@@ -62,7 +62,7 @@ pub(super) struct AlignedProfile<'a> {
     lost: Option<String>,
 }
 
-/// Aligns a profile; where its nominal does not help, in its own axes, in which what needs no nominal is measured.
+/// Aligns a profile. Where its nominal does not help, the profile stays in its own axes, and what needs no nominal is measured.
 pub(super) fn laid<'a>(
     profile: &Profile,
     side: Side,

@@ -1,7 +1,7 @@
 //! Measures profiles: flange height and thickness of wheels, wear of rails, against a nominal profile or alone.
 //!
-//! Definitions and sources are in [`docs::measures`](crate::docs::measures). Everything is measured on the curve of a profile, which of a
-//! file is the one that was fitted to its points.
+//! Definitions and sources are in [`docs::measures`](crate::docs::measures). Everything is measured on the curve of a profile; for a
+//! file, this is the curve that was fitted to its points.
 
 mod align;
 mod average;

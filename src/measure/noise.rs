@@ -55,7 +55,7 @@ impl PointNoise {
 /// an instrument are not in it. Cost: the samples times about 10 ms, with a fit 100 ms, over the threads of the current rayon pool.
 ///
 /// # Errors
-/// Options or noise without meaning; a profile shorter than the step. Samples that cannot be measured are a finding.
+/// Options or noise without meaning; a profile shorter than two steps. Samples that cannot be measured are a finding.
 ///
 /// # Examples
 /// ```
@@ -81,7 +81,7 @@ pub fn measure_noisy(
     if measures.alignment.is_none() {
         return Ok(measures);
     }
-    // The nominal was one for the measures.
+    // A bad nominal has ended above: it leaves no alignment.
     let nominal = nominal.and_then(|nominal| Nominal::new(nominal, side).ok());
     let again = Remeasured::new(profile, side, noise.step).map_err(|error| error.within("noise"))?;
     let again = again.drawn_by(&noise.curve);

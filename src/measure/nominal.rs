@@ -39,22 +39,24 @@ pub(super) struct Nominal<'a> {
 }
 
 impl<'a> Nominal<'a> {
+    /// Makes the nominal of a body, with the flange back of a wheel.
+    ///
     /// # Errors
-    /// A wheel without a flange back.
+    /// A wheel without a flange back; a profile larger than wheels and rails are.
     pub fn new(profile: &'a Profile, side: Side) -> Result<Self, String> {
         let curve = sized(profile)?;
         let back = if side == Side::Wheel { own_back(&curve)?.x } else { 0.0 };
         Ok(Self { profile, curve, back })
     }
 
-    /// The same, with an error that names the profile.
+    /// Makes the nominal of a body, as [`Nominal::new`] does, with an error that names the profile.
     pub fn named(profile: &'a Profile, side: Side) -> error::Result<Self> {
         let advice = "give the whole profile";
         Self::new(profile, side).map_err(|why| Error::new(&profile.name, why, "a whole nominal", advice))
     }
 }
 
-/// Returns the curve of a profile that is as large as wheels and rails are.
+/// Returns the curve of a profile; an error if it is larger than wheels and rails are.
 pub(super) fn sized(profile: &Profile) -> Result<MarkedCurve, String> {
     let extent = profile.extent();
     if extent > LARGEST {
@@ -75,13 +77,13 @@ pub(super) fn own_back(curve: &MarkedCurve) -> Result<Back, String> {
     back_of(curve)
 }
 
-/// Whether the tip of a flange may be so far from its back \[mm\].
+/// Tells whether a flange's tip at this distance \[mm\] from x = 0 shows that x = 0 is the flange back.
 pub(super) fn is_from_back(tip: f64) -> bool {
     tip > TIP_FROM_BACK.low && tip < TIP_FROM_BACK.high
 }
 
 /// Returns x of the flange back: of a line through the lowest 10 mm where it is upright, at their middle; otherwise of the leftmost
-/// point, if the profile is upright there.
+/// point, if the profile is inclined by 75° or more there.
 pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
     let none = |why: String| format!("no flange back: {why}");
     let tip = curve.highest(-1.0).ok_or_else(|| none("no points".into()))?;
@@ -115,7 +117,7 @@ pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
     }
 }
 
-/// Returns the running head of a rail: what is right of its last groove.
+/// Returns the running head of a rail, right of its last groove, and the index of the groove's bottom; `None` without a groove.
 pub(super) fn running_head(curve: &MarkedCurve) -> (MarkedCurve, Option<usize>) {
     let heights: Vec<f64> = curve.marks.iter().map(|mark| mark.station.z).collect();
     let groove = last_groove(&heights);

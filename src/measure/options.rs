@@ -20,7 +20,7 @@ pub struct MeasureOptions {
     pub width_level: f64,
     /// Depth below the top of rail at which W2, groove width and keeper wear are measured; 14.
     pub gauge_level: f64,
-    /// The rail from whose top that depth counts: "measured", or "nominal".
+    /// The rail from whose top `gauge_level` counts: "measured", or "nominal".
     pub gauge_from: GaugeFrom,
     /// Alignment; if not given, the one that [`Align`] says.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -30,7 +30,7 @@ pub struct MeasureOptions {
     pub unworn: Vec<Interval>,
 }
 
-/// One of the two rails.
+/// The rail from whose top the gauge level counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GaugeFrom {
@@ -42,16 +42,16 @@ pub enum GaugeFrom {
 
 /// How a measured profile is put on its nominal one, or what its axes are without one.
 ///
-/// If none is chosen: the best fit with a nominal; without, the file's axes, and for wheels whose x = 0 does not lie at the flange
-/// back the back itself.
+/// If none is chosen: with a nominal, the best fit; without one, the file's axes for rails and for wheels whose x = 0 is the flange back,
+/// and the flange back for other wheels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Align {
     /// The file's axes.
     None,
-    /// Wheels: moved along x so that X = 0 at the flange back. Without a nominal, too.
+    /// Wheels: moved along x so that X = 0 is the flange back; possible without a nominal.
     Back,
-    /// Wheels: moved so that the flange backs and the tread points at X = 70 are one.
+    /// Wheels: moved so that the flange backs, and the tread points at the taping line, coincide.
     TreadPoint,
     /// Wheels: moved and turned so that flange back and outer tread fit those of the nominal.
     BackAndTread,

@@ -9,7 +9,7 @@ use crate::profile::{Profile, Side, Station};
 
 /// Distance of differences along the nominal \[mm\].
 const EVERY: f64 = 2.0;
-/// Every which mark is drawn: they are finer than a picture shows.
+/// One in so many marks is drawn: all of them are finer than a picture shows.
 const DRAWN: usize = 4;
 /// Farthest difference \[mm\]: beyond it lies another part of the profile.
 const FARTHEST: f64 = 15.0;
@@ -64,7 +64,7 @@ pub fn overlay(
     })
 }
 
-/// Returns the point of a curve that is the nearest on the normal of a station.
+/// Returns the nearest point of a curve on the normal of a station; `None` if there is none within [`FARTHEST`].
 pub(super) fn across(curve: &MarkedCurve, at: &Station) -> Option<[f64; 2]> {
     let all = curve.crossings([at.cos, at.sin], at.cos * at.x + at.sin * at.z).into_iter();
     let distance = |point: &[f64; 2]| (point[0] - at.x).hypot(point[1] - at.z);

@@ -60,7 +60,7 @@ quantities! {
 }
 
 impl Quantity {
-    /// Returns the key of how far it moves if the alignment is off.
+    /// Returns the key of the quantity's largest change if the alignment is off.
     pub fn key_if_off(self) -> String {
         format!("{}_if_off", self.key())
     }

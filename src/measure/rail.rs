@@ -23,7 +23,7 @@ const ABOVE_END: f64 = 0.01;
 /// Farthest distance \[mm\] of a worn gauge corner from the nominal one.
 const FARTHEST: f64 = 25.0;
 
-/// A running head with its top and what is left of it.
+/// A running head with its top, and the groove beside it.
 struct Head<'a> {
     whole: &'a MarkedCurve,
     /// From the bottom of the groove, if there is one, to the field side.
@@ -181,9 +181,9 @@ fn w3(head: &Head, drawn: &Head) -> Result<f64, String> {
     })
 }
 
-/// Returns the radius \[mm\] of the circle that fits the crown about `x`, + for a crown that bulges up.
+/// Returns the radius \[mm\] of the circle that fits the crown about x = `about`; an error if the crown does not bulge up.
 ///
-/// Method: κ(x² + z²)/2 + bx + a = z by least squares, which is the distance of a nearly level arc but for κz, and exact on a circle.
+/// Method: κ(x² + z²)/2 + bx + a = z by least squares. The residual is the distance from a nearly level arc times 1 − κz.
 fn crown_radius(head: &Head, about: f64) -> Result<f64, String> {
     let curve = &head.curve;
     let inside = || {
@@ -212,7 +212,7 @@ fn crown_radius(head: &Head, about: f64) -> Result<f64, String> {
     Ok((1.0 + slope * slope - 2.0 * height * curvature).sqrt() / -curvature)
 }
 
-/// Returns the angle \[deg\] of a line through the gauge face, from `level` down.
+/// Returns the angle \[deg\] of a line through the gauge face, from `level` \[mm\] down, against the vertical; + if it widens downwards.
 fn side_face_angle(head: &Head, level: f64) -> Result<f64, String> {
     head.face(level)?;
     let all = head.curve.marks.iter().zip(head.curve.lengths()).take(head.top.mark);
@@ -234,7 +234,7 @@ fn side_face_angle(head: &Head, level: f64) -> Result<f64, String> {
     Ok(slope.atan().to_degrees())
 }
 
-/// Returns how far the gauge face recedes below what stands out farthest \[mm\].
+/// Returns how far \[mm\] the gauge face recedes below its outermost point.
 fn lip(head: &Head) -> f64 {
     let (mut outermost, mut lip) = (f64::INFINITY, 0.0f64);
     let face = head.curve.marks.iter().take(head.top.mark).rev();

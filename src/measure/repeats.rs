@@ -6,10 +6,10 @@ use crate::error::{Error, Result};
 use crate::measured::noise::Spread;
 
 /// Gives the mean of each quantity over repeated measurements of one profile, and its spread: the interval in which a further
-/// measurement lies with 95 %, by Student's t. Alignments, if the repeats have several, are part of the spread. `if_off` is the
+/// measurement lies with 95 %, by Student's t. Differences of alignment are part of the spread. `if_off` is the
 /// largest of all.
 ///
-/// A quantity that not all of them have is that of the others, with a finding; of one alone there is a value and no spread.
+/// A quantity that some measurements do not have is the mean of the others, with a finding; if only one has it, there is no spread.
 ///
 /// # Errors
 /// Fewer than two measurements; two bodies.

@@ -17,7 +17,7 @@ use crate::profile::Side;
 pub struct RowColumns<'a> {
     /// Limits, with a column of those that a row breaks.
     pub limits: Option<&'a Limits>,
-    /// What values spread over, in words, with columns of the spread of each quantity.
+    /// What the spread is over, in words, with columns of the spread of each quantity.
     pub spread: Option<&'a str>,
 }
 
@@ -65,7 +65,7 @@ impl MeasureRow {
     }
 
     /// Returns the columns with their values, null where there is none: `file`, `kind`, the quantities, `alignment`, `alignment_text`,
-    /// `alignment_residual_mm`, how far the quantities move, `limits` if there are any, `finding`; the
+    /// `alignment_residual_mm`, `…_if_off` of each quantity, `limits` if there are any, `finding`; the
     /// spread of each quantity, if it is asked for.
     pub fn values(&self, columns: RowColumns) -> Map<String, Value> {
         let measures = self.measured.as_ref().ok();

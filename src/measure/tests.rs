@@ -17,7 +17,7 @@ fn value(measures: &Measures, quantity: Quantity) -> f64 {
     measures.value(quantity).unwrap_or_else(|| panic!("{quantity:?}: {:?}", measures.findings))
 }
 
-/// Moves each point of a nominal by `wear(x, z, nx, nz)`, then turns it and moves it.
+/// Moves each point of a nominal that is to be kept by `by`, then turns and moves them all by `frame`.
 fn worn(
     nominal: &Profile,
     side: Side,
@@ -58,7 +58,7 @@ fn bump(x: f64, [low, high]: [f64; 2], most: f64) -> f64 {
 
 #[test]
 fn drawings_have_the_flange_of_their_name() -> Result<()> {
-    // EN 13715: S1002 has e = 32.5 and h = 28; EN 15302's drawings have the same flange, but for C.
+    // EN 13715: S1002 has e = 32.5 and h = 28; EN 15302's drawings have the same flange, except C.
     let measures = measure(&standards::wheel("S1002")?, Side::Wheel, None, &MeasureOptions::default())?;
     assert!((value(&measures, Quantity::FlangeHeight) - 28.0).abs() < 1e-6);
     assert!((value(&measures, Quantity::FlangeThickness) - 32.5).abs() < 1e-3, "{measures:?}");

@@ -70,7 +70,7 @@ pub struct Record {
     pub warnings: Vec<Finding>,
     /// The curve that was drawn.
     pub curve: CurveRecord,
-    /// Where the section was cut; `None` for a profile that is none.
+    /// Where the section was cut; `None` unless the profile is a section of slices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut: Option<CutRecord>,
 }
@@ -172,14 +172,14 @@ pub fn body(file: &str, bytes: &[u8], options: &Options) -> Result<Option<Side>>
     }
 }
 
-/// Makes the profile of a section between slices. `file` is the name of the list, and `contents` gives the bytes of a
-/// slice by its name in [`SectionOfList::files`], which is asked for once.
+/// Makes the profile of a section between slices. `file` is the name of the list, and `contents` holds the bytes of each
+/// slice beside its name in [`SectionOfList::files`].
 ///
 /// Options hold for every slice. See [`SectionOfList`] for the place; the accuracy is in `docs/measured-files.md`.
 ///
 /// # Errors
-/// The errors of [`profile`] for each slice, with its name; slices that are turned differently, have an origin of their
-/// own each, or have no part in common.
+/// The errors of [`profile`] for each slice, with its name; a slice without bytes; slices that are turned or scaled
+/// differently, have an origin of their own each, or have no part in common.
 pub fn section(
     file: &str,
     cut: &SectionOfList<'_>,
@@ -230,7 +230,7 @@ fn slice(name: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Plac
     Ok(placed)
 }
 
-/// Rejects slices whose shapes or formats turn them differently.
+/// Rejects slices whose shapes or formats turn or scale them differently.
 fn same_turn(slices: &[(&str, Placed)]) -> Result<()> {
     let [(a, first), (b, second)] = slices else { return Ok(()) };
     if first.transform.scale == second.transform.scale {

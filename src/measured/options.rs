@@ -22,8 +22,8 @@ pub const GAUGE_HEIGHT: f64 = 14.0;
 /// Default distance of the taping line from the flange back \[mm\] (EN 13715: 70).
 pub const TAPE_DISTANCE: f64 = 70.0;
 
-/// Declares tables of keys that hold those of a measured file, which stand here alone. serde's `flatten` would lose the lines of
-/// errors and the list of known keys.
+/// Declares tables that have the keys of a measured file among their own, so that these keys are written once. serde's `flatten` would
+/// lose the lines of errors and the list of known keys.
 macro_rules! measured_options {
     // The table with its own keys first.
     (table [$(#[$of_table:meta])* pub struct $name:ident { $($own:tt)* }] $($(#[$of_key:meta])* $key:ident: $type:ty;)*) => {
@@ -33,7 +33,7 @@ macro_rules! measured_options {
             $($(#[$of_key])* pub $key: $type,)*
         }
     };
-    // The way from such a table to the options.
+    // The conversion of such a table to the options.
     (method [$name:ident] $($(#[$of_key:meta])* $key:ident: $type:ty;)*) => {
         impl $name {
             /// Gives the keys of a measured file.

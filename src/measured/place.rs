@@ -58,8 +58,8 @@ fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
 /// contradicts, each with the option that would reverse it; they change nothing.
 ///
 /// # Errors
-/// A body other than the file's own. An orientation that neither option, format nor shape decides; the error lists the
-/// choices. An origin that the points do not reach.
+/// A body other than the file's own. Fewer than three points, a width that does not fit the unit, points in no order. An orientation
+/// that neither option, format nor shape decides; the error lists the choices. An origin that the points do not reach.
 pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transform, Vec<Finding>)> {
     if let Some(body) = points.body.filter(|body| *body != side) {
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
@@ -76,7 +76,7 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transf
     transform.scale = [unit; 2];
     let stated = options.unit.is_some() || points.unit.is_some();
     let wrong = wrong_unit(&transform.points(&points.at), unit, stated);
-    // What else is to be asked is found in the likeliest unit.
+    // Further questions are found in the likeliest unit.
     let unit = wrong.as_ref().map_or(unit, |(_, likeliest)| *likeliest);
     transform.scale = [unit; 2];
     let (findings, open) = transform.turn(points, side, options);

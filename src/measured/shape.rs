@@ -1,7 +1,7 @@
 //! Decides the orientation of a profile from its shape: foot, groove and flange.
 //!
-//! This is used where neither an option nor the format's definition decides. A shape that looks like a body both ways up
-//! proves nothing. Example: a groove that is cut off on both its tops is an upside-down head.
+//! The shape decides where neither an option nor the format's definition does; elsewhere it may only contradict the definition. A
+//! shape that looks like a body both ways up proves nothing. Example: a groove cut off on both its tops looks like an upside-down head.
 
 use std::ops::RangeInclusive;
 
@@ -9,8 +9,8 @@ use super::read::points::Point;
 use crate::numerics::interval::Interval;
 use crate::profile::{Side, last_groove};
 
-/// Least ratio between the end drops of a wheel's true upper side and those of the wrong one. The value 4 leaves room for
-/// hollow wear and for edges that curl.
+/// Least ratio of the drop from a wheel's flange tip to the drop from the extreme on its other side, each to the nearer end in z. The
+/// value 4 leaves room for hollow wear and for edges that curl.
 const PLAIN: f64 = 4.0;
 /// Least drop \[mm\] of both ends from a rail's top, or from a flange's tip. A smaller drop may be wear or noise.
 const LEAST_DROP: f64 = 0.5;

@@ -10,8 +10,8 @@ use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
 use crate::profile::Side;
 
-/// Distance from a slice \[mm or rad\] up to which a section is that slice: what the rounding of a position in another
-/// unit leaves.
+/// Distance from a slice \[mm or rad\] up to which a section is that slice. A position converted from another unit is
+/// rounded by less.
 const SAME_PLACE: f64 = 1e-6;
 
 /// A section of a variable profile: where it lies, and what of the list belongs to it.
@@ -58,10 +58,10 @@ fn around(angle: f64) -> f64 {
 impl<'a> SectionOfList<'a> {
     /// Finds the slices around the place that the options name.
     ///
-    /// A wheel is periodic; where its list leaves out a part of the circumference, the nearest slice at that end holds.
+    /// The angle around a wheel is first turned into \[−π, π). Before the first and after the last slice of a wheel, that slice holds.
     ///
     /// # Errors
-    /// No place, or that of the other body; a place outside a rail's slices.
+    /// No place, one that is not finite, or that of the other body; a place outside a rail's slices.
     pub fn new(list: &'a SliceList, options: &Options) -> Result<Self> {
         let (key, given, other, taken) = match list.side {
             Side::Rail => ("along", options.along, "angle", options.angle.is_some()),
@@ -104,14 +104,14 @@ impl<'a> SectionOfList<'a> {
         Ok(Self { side: list.side, at: asked, first, second })
     }
 
-    /// The files to open, relative to the list; no file twice.
+    /// Gives the files to open, relative to the list; no file twice.
     pub fn files(&self) -> Vec<&'a str> {
         let second = self.second.map(|(slice, _)| slice.file.as_str());
         let second = second.filter(|file| *file != self.first.file);
         [self.first.file.as_str()].into_iter().chain(second).collect()
     }
 
-    /// The place in words.
+    /// Gives the place in words.
     pub(super) fn place(&self) -> String {
         format!("section at {} {}", self.at, unit(self.side))
     }
@@ -119,7 +119,7 @@ impl<'a> SectionOfList<'a> {
     /// Makes the points of the section from those of its slices, which `points_of` gives in profile axes from left to
     /// right; returns them in that order with the record.
     ///
-    /// Method: where the list has features, they divide each slice into parts; else it is one part. A point of the section
+    /// Method: where the list has features, they divide each slice into parts; otherwise it is one part. A point of the section
     /// is the straight-line interpolation between the points of both slices at equal relative arc length in the same part,
     /// the arc length being that of the polygon. The part's points are those of the slice that has more there. Parts that
     /// only one of the slices has end at that slice.
@@ -202,14 +202,14 @@ struct Path {
 }
 
 impl Path {
-    /// The indices of the points between two arc lengths and not at them.
+    /// Gives the indices of the points between two arc lengths, without points at them.
     fn inside(&self, arc: Interval) -> std::ops::Range<usize> {
         let first = self.arc.partition_point(|&s| s <= arc.low + SAME_POINT);
         let last = self.arc.partition_point(|&s| s < arc.high - SAME_POINT);
         first..last.max(first)
     }
 
-    /// The point of the polygon at an arc length.
+    /// Gives the point of the polygon at an arc length \[mm\].
     fn at(&self, s: f64) -> Point {
         let k = self.arc.partition_point(|&other| other <= s).clamp(1, self.arc.len() - 1);
         let (a, b) = (&self.points[k - 1], &self.points[k]);
@@ -218,20 +218,20 @@ impl Path {
         if share == 1.0 { *b } else { mixed(a, b, share) }
     }
 
-    /// The points between the first and the last feature.
+    /// Gives the points from the first to the last feature, one at each.
     fn whole(&self) -> Vec<Point> {
         let [from, to] = self.parts.map(|k| self.breaks[k]);
         let inside = self.inside(Interval::new(from, to));
         [self.at(from)].into_iter().chain(self.points[inside].iter().copied()).chain([self.at(to)]).collect()
     }
 
-    /// The arc lengths at both ends of a part.
+    /// Gives the arc lengths \[mm\] at both ends of a part.
     fn part(&self, k: usize) -> Interval {
         Interval::new(self.breaks[k], self.breaks[k + 1])
     }
 }
 
-/// Interpolates between two slices, part by part; returns the number of the slice with most of the points, too. `None`
+/// Interpolates between two slices, part by part. Gives the points, and which slice (0 or 1) most of them come from; `None`
 /// without a common part.
 fn between(a: &Path, b: &Path, share: f64) -> Option<(Vec<Point>, usize)> {
     let (from, to) = (a.parts[0].max(b.parts[0]), a.parts[1].min(b.parts[1]));
@@ -265,7 +265,7 @@ fn between(a: &Path, b: &Path, share: f64) -> Option<(Vec<Point>, usize)> {
     Some((points, usize::from(counts[1] > counts[0])))
 }
 
-/// The point between two; all but its place is that of the first.
+/// Gives the point at a share of the way from one to another, with weight, number and line of the first.
 fn mixed(a: &Point, b: &Point, share: f64) -> Point {
     Point { x: a.x + share * (b.x - a.x), z: a.z + share * (b.z - a.z), ..*a }
 }

@@ -223,7 +223,7 @@ fn origins_go_where_they_are_asked() -> Result<()> {
     Ok(())
 }
 
-/// Returns points of a wave on a flat line 60 mm wide.
+/// Returns points of a wave on a crown of 100 mm radius, 60 mm wide.
 fn flat(wave: impl Fn(f64) -> f64) -> Vec<Point> {
     (0..300)
         .map(|k| {

@@ -15,7 +15,7 @@ impl<T> Bodies<T> {
         [&self.rail, &self.wheel]
     }
 
-    /// Gives what `of` makes of each value.
+    /// Applies `of` to each value.
     pub fn map<U>(self, of: impl Fn(T) -> U) -> Bodies<U> {
         Bodies { rail: of(self.rail), wheel: of(self.wheel) }
     }

@@ -16,7 +16,7 @@ pub const POINTS: usize = MANY;
 /// Coefficients at the end of a series that have to be rounding before the series counts as complete. One may vanish by parity.
 pub const PROOF: usize = 2;
 
-/// Most points of an interpolant in powers.
+/// Largest number of points of an interpolant in powers.
 pub const MOST_POINTS: usize = 12;
 
 const HALF: usize = POINTS / 2;
@@ -82,9 +82,9 @@ impl pulp::WithSimd for NodeValues<'_> {
     }
 }
 
-/// Computes the coefficients of t^k from those of T_k. Only the first `kept` count; the others are taken for 0.
+/// Computes the coefficients of t^k from those of T_k. Only the first `kept` count; the others are taken as 0.
 ///
-/// Accuracy: digits are lost where the coefficients fall by a factor weaker than about 0.4 a step.
+/// Accuracy: digits are lost where each coefficient is more than about 0.4 of the one before.
 #[inline(always)]
 pub fn to_powers(c: &Lanes, kept: usize) -> Lanes {
     let [of_even, of_odd] = &*POWERS;
@@ -175,7 +175,7 @@ pub fn powers<const N: usize>(v: &[[f64; N]], d: &mut [[f64; N]]) {
     let n = v.len();
     for order in 1..n {
         let mut rest = n;
-        // Two by one division, which takes longer than some products.
+        // One division serves two quotients, since it takes longer than some products.
         while rest >= order + 2 {
             rest -= 2;
             let [i, j] = [rest, rest + 1];
@@ -226,7 +226,7 @@ pub fn extrema(n: usize) -> &'static [f64] {
     &EXTREMA[n - 1][usize::from(n < 4)..]
 }
 
-/// The extrema (1 − cos(kπ/n))/2 for k = 1 and k = n/2, n points in row n − 1; for n = 1 that of v times a line through zero at ½.
+/// The extrema (1 − cos(kπ/n))/2 for k = 1 and k = n/2, n points in row n − 1; for n = 1 that of v(v − ½).
 static EXTREMA: LazyLock<[[f64; 2]; MOST_POINTS]> = LazyLock::new(|| {
     let extremum = |k: usize, n: usize| (FRAC_PI_2 * k as f64 / n as f64).sin().powi(2);
     from_fn(|row| match row + 1 {

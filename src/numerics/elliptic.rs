@@ -1,12 +1,12 @@
 //! Complete elliptic integrals by the arithmetic–geometric mean.
 
-/// Most steps of the mean. It converges quadratically, from any modulus that a double can hold.
+/// Largest number of steps of the mean. It converges quadratically, from any modulus that a double can hold.
 const MOST_STEPS: usize = 64;
 
 /// Computes K(e) and D(e) = (K − E)/e² for the complementary modulus k′ = √(1 − e²) in (0, 1].
 ///
 /// Accuracy: a few roundings, even for e → 0, where K − E cancels and D → π/4.
-/// Degenerate: k′ = 0 gives infinities.
+/// Degenerate: k′ = 0, where both integrals are infinite, gives about 1e21.
 pub fn complete(complementary: f64) -> [f64; 2] {
     let (mut a, mut b) = (1.0, complementary);
     // Σ 2ⁿ⁻¹ cₙ²/e² with c₀ = e, c₁ = (1 − k′)/2 and e² = (1 − k′)(1 + k′).

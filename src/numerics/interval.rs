@@ -90,7 +90,7 @@ impl Interval {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Gives the number at a share of the width: the lower end at 0, the upper one at 1 but for rounding.
+    /// Gives the number at a share of the width: the lower end at 0 and, to rounding, the upper end at 1.
     #[inline(always)]
     pub fn at(self, share: f64) -> f64 {
         self.low + (self.high - self.low) * share
@@ -141,7 +141,7 @@ impl Interval {
     /// Gives the number of the interval that is nearest to a number; NaN of NaN.
     #[inline(always)]
     pub fn nearest(self, number: f64) -> f64 {
-        // In this form the compiler takes its instructions for the larger and the smaller of two numbers.
+        // In this form the compiler uses the machine's instructions for minimum and maximum.
         let risen = if number < self.low { self.low } else { number };
         if risen > self.high { self.high } else { risen }
     }
@@ -158,7 +158,7 @@ impl Interval {
         Self::new(self.low.min(other.low), self.high.max(other.high))
     }
 
-    /// Gives what both intervals share; empty, with its ends swapped, if nothing.
+    /// Gives what both intervals share. If they share nothing it is empty: low > high.
     #[inline(always)]
     pub fn cut(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))

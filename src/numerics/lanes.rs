@@ -9,7 +9,7 @@ pub const MANY: usize = 16;
 /// One quantity, N times.
 pub type Lanes<const N: usize = MANY> = [f64; N];
 
-/// Makes an array from a function of the index, by a loop: the calls of `std::array::from_fn` may be left out of line.
+/// Makes an array from a function of the index, by a loop: the calls of `std::array::from_fn` may not be inlined.
 #[inline(always)]
 pub fn lanes<const N: usize>(value: impl Fn(usize) -> f64) -> Lanes<N> {
     let mut lanes = [0.0; N];
@@ -51,7 +51,7 @@ pub fn largest<const N: usize>(values: &Lanes<N>) -> f64 {
     most[0]
 }
 
-/// Gives the smallest magnitude of N values to two roundings, where N is a power of two. A NaN does not count.
+/// Gives the smallest magnitude of N values to two roundings, where N is a power of two. A NaN does not count; infinite where all are NaN.
 #[inline(always)]
 pub fn smallest<const N: usize>(values: &Lanes<N>) -> f64 {
     1.0 / largest::<N>(&lanes(|k| 1.0 / values[k]))

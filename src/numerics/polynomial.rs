@@ -6,7 +6,7 @@ use super::interval::Interval;
 use super::lanes::{Lanes, multiply_add};
 use super::twice::Twice;
 
-/// The coefficients of N polynomials. It is a trait and not an iterator, because the closures of iterators may be left out of line.
+/// The coefficients of N polynomials. It is a trait and not an iterator, because the closures of iterators may not be inlined.
 pub trait Coefficients<const N: usize>: Copy {
     /// Gives the number of coefficients of each polynomial.
     fn count(self) -> usize;
@@ -138,8 +138,8 @@ pub fn recentred<T: Copy + Add<Output = T> + Mul<Output = T>>(c: &[T], centre: T
     out
 }
 
-/// Computes bounds of p over an interval of t from its Bernstein coefficients. They are never too narrow by more than rounding, exact
-/// at the ends, and converge with the square of the width.
+/// Computes bounds of p over an interval of t from its Bernstein coefficients. They are too narrow by rounding at most, exact
+/// where p is extreme at an end, and converge with the square of the width.
 pub fn range(c: &[f64], t: Interval) -> Interval {
     Interval::around(bernstein(c, t))
 }
@@ -164,7 +164,7 @@ pub fn bernstein(c: &[f64], t: Interval) -> Vec<f64> {
     (0..shifted.len()).map(coefficient).collect()
 }
 
-/// Computes the coefficients of the product of two polynomials. There are none where one polynomial has none.
+/// Computes the coefficients of the product of two polynomials. All are 0 where one polynomial has no coefficients.
 pub fn convolution(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; (a.len() + b.len()).saturating_sub(1)];
     for (i, a) in a.iter().enumerate() {

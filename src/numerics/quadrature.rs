@@ -57,14 +57,14 @@ const LONG: Rule<8, 4> = Rule {
 /// QUADPACK). The difference is the error of the Gauss rule, which has half the order.
 const SMOOTH: f64 = 200.0;
 
-/// After so many panels the result is taken as it is. A kink takes 40.
+/// Largest number of panels; with so many the result is taken as it is. A kink takes 40.
 const MOST_PANELS: usize = 128;
 
 /// A halving that leaves more than this share of a panel's error has met rounding: a kink leaves a quarter, a step a half on the
 /// average, noise about 0.7. A kink may by chance sit where the rule hardly sees it, so that a few such halvings prove nothing.
 const NOISE_SHARE: f64 = 0.6;
 
-/// After so many halvings that met rounding, the rest is rounding.
+/// Number of halvings that met rounding after which the rest of the error counts as rounding.
 const IDLE_HALVINGS: usize = 8;
 
 /// An interval with the integrals over it and their error estimates.
@@ -131,7 +131,7 @@ fn halved<const N: usize>(
     }
 }
 
-/// Gives the largest of the errors, each in units of what it may be. An error that is no number decides nothing.
+/// Gives the largest of the errors, each in units of its demand. A NaN does not count.
 fn excess<const N: usize>(sums: &[f64; N], errors: &[f64; N], relative: &[f64; N]) -> f64 {
     (0..N).map(|k| errors[k] / (relative[k] * sums[k].abs())).fold(0.0, f64::max)
 }

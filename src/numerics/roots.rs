@@ -45,17 +45,17 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     }
 }
 
-/// Most secant steps.
+/// Largest number of secant steps.
 const MOST_SECANTS: usize = 8;
 
 /// Finds the root of a smooth `f` between two places by a few secant steps; the last one is at most `enough`.
 ///
 /// Accuracy: where f bends by little over the bracket, far better than `enough`.
-/// Degenerate: `None` where the signs are equal or a value is NaN, where a step leaves the bracket, and after eight steps.
+/// Degenerate: `None` where the signs are equal, where a value is 0 or NaN, where a step leaves the bracket, and after eight steps.
 fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enough: f64) -> Option<f64> {
     let bounds = [last.min(at), last.max(at)];
     let (mut before, mut value) = (f(last), f(at));
-    // Not those of NaN, either.
+    // False for NaN, too.
     let opposite = before * value < 0.0;
     if !opposite {
         return None;
@@ -74,8 +74,8 @@ fn secant(mut f: impl FnMut(f64) -> f64, [mut last, mut at]: [f64; 2], enough: f
     None
 }
 
-/// Finds the place between `below`, where `f` < 0, and `above`, where it is not or is NaN, at which that changes, within `enough`: by
-/// secant steps where `f` is smooth, by bisection where it is not. Of several such places it is any one.
+/// Finds, to `enough`, a place between `below`, where `f` < 0, and `above`, where `f` ≥ 0 or NaN, at which the one becomes the other:
+/// by secant steps where `f` is smooth, by bisection where it is not. Of several such places it is any one.
 ///
 /// Degenerate: a place next to `below` where `f` is not negative there.
 pub fn change(mut f: impl FnMut(f64) -> f64, [below, above]: [f64; 2], enough: f64) -> f64 {
@@ -86,13 +86,14 @@ pub fn change(mut f: impl FnMut(f64) -> f64, [below, above]: [f64; 2], enough: f
 /// Finds the last number for which `holds` is true, from `on`, where it is true, towards `off`, where it is false. Of several such
 /// numbers it is any one.
 ///
-/// Method: bisection until `on` and `off` are neighbouring numbers. Evaluations: those of a root in [`bracketed`].
+/// Method: bisection until `on` and `off` are neighbouring numbers. Cost: some 60 evaluations for a number of the size of the bracket,
+/// and one more for every halving of the way to a number nearer to zero.
 /// Degenerate: `on` where the two are equal or neighbours, and where one is NaN.
 pub fn last_where(holds: impl FnMut(f64) -> bool, on: f64, off: f64) -> f64 {
     last_within(holds, on, off, 0.0)
 }
 
-/// Does what [`last_where`] does, until `on` and `off` are no more than `enough` apart.
+/// Bisects until `on`, where `holds` is true, and `off`, where it is false, are neighbours or at most `enough` apart, and gives `on`.
 fn last_within(mut holds: impl FnMut(f64) -> bool, mut on: f64, mut off: f64, enough: f64) -> f64 {
     loop {
         let middle = on + (off - on) / 2.0;

@@ -6,15 +6,15 @@ use super::lanes::{Lanes, lanes, largest};
 use super::noise::measured;
 use super::roots::bracketed;
 
-/// Share of a function's size up to which its last coefficients count as rounding. Interpolants are 1e-15 of it apart from their
-/// functions; noise of some hundred roundings does not look unresolved.
+/// Share of a function's size up to which its last coefficients count as rounding. Interpolants differ from their functions by
+/// 1e-15 of it; noise of some hundred roundings does not look unresolved.
 const RESOLVED: f64 = 1e-13;
 
 /// Multiple of the last coefficients that the sum of all that are left out may reach. Those of a function with a kink fall so slowly
 /// that it reaches some 16.
 const LEFT_OUT: f64 = 256.0;
 
-/// Share of the first interval at which a part is not halved again: there the function jumps, ends or touches zero.
+/// Half-length, as a share of the first interval, up to which a part is not halved again: the function jumps, ends or touches zero there.
 const SHORTEST: f64 = 1e-10;
 
 /// Size of a function, in units of its error, up to which it is zero: the sum of 15 coefficients that are rounding is smaller.
@@ -23,17 +23,17 @@ const ZERO: f64 = 16.0;
 /// Number of batches after which nothing is halved any more. A touched zero takes 80.
 const MOST_BATCHES: usize = 1024;
 
-/// Number of batches from which on the noise is measured, by one more batch for every interval that is halved: it may be larger than it
-/// is said to be.
+/// Number of batches from which on the noise is measured, by one more batch for every interval that is halved: it may be larger than
+/// the caller's estimate.
 const NOISY: usize = 16;
 
 /// Finds every place inside an interval at which a function changes its sign, ascending, and perhaps some at which it only touches
-/// zero. `f` gives the values at 16 places; `noise` is the size of their rounding. `f` must be smooth but at some places.
+/// zero. `f` gives the values at 16 places; `noise` is the size of their rounding. `f` must be smooth except at isolated places.
 ///
 /// Method: the function is interpolated at 16 Chebyshev points. The sum of |c_k|, k ≥ 1, and a multiple of the last of them, prove that
 /// there is no zero; where the last coefficients are rounding, the derivative's prove that there is at most one. Where they prove
 /// neither, the interval is halved. Accuracy: noise over slope. Two changes may be missed only if |f| stays below its noise
-/// between them. Noise that is larger than it is said to be is measured where halving does not help.
+/// between them. Where halving does not help, the noise is measured, since it may be larger than `noise`.
 /// Cost: 16 values for most intervals. Degenerate: no place where `f` is NaN.
 pub fn sign_changes(
     mut f: impl FnMut(&Lanes) -> Lanes,

@@ -1,6 +1,6 @@
 //! Slopes at the knots of piecewise cubics through given values.
 
-/// Returns the slopes of the monotone cubic (pchip) through values at ascending places \[FritschButland1984\]: between two knots it
+/// Gives the slopes of the monotone cubic (pchip) through values at ascending places \[FritschButland1984\]: between two knots it
 /// stays between their values. One value has the slope 0, two give a straight line.
 pub fn monotone(at: &[f64], values: &[f64]) -> Vec<f64> {
     let (steps, rises) = differences(at, values);
@@ -20,7 +20,7 @@ pub fn monotone(at: &[f64], values: &[f64]) -> Vec<f64> {
     [ends[0]].into_iter().chain(inner).chain([ends[1]]).collect()
 }
 
-/// Slope at the end of a monotone cubic, of the two steps and rises next to it: that of the parabola, as far as it is monotone.
+/// Gives the slope at the end of a monotone cubic from the next two steps and rises: that of the parabola, as far as it is monotone.
 fn end([h, g]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
     let slope = ((2.0 * h + g) * a - h * b) / (h + g);
     if slope * a <= 0.0 {
@@ -32,7 +32,7 @@ fn end([h, g]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
     }
 }
 
-/// Returns the slopes of the cubic spline through values at ascending places, whose first two and last two pieces are one cubic each
+/// Gives the slopes of the cubic spline through values at ascending places, whose first two and last two pieces are one cubic each
 /// ("not a knot"). Three values give a parabola, two a straight line, one the slope 0.
 pub fn spline(at: &[f64], values: &[f64]) -> Vec<f64> {
     let (h, rises) = differences(at, values);
@@ -72,7 +72,7 @@ pub fn spline(at: &[f64], values: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Steps between places, and the rise of the values over each.
+/// Gives the steps between neighbouring places, and for each step the rise of the values divided by it.
 fn differences(at: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let steps: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let rises = values.windows(2).zip(&steps).map(|(pair, step)| (pair[1] - pair[0]) / step).collect();

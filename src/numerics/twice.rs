@@ -1,7 +1,7 @@
 //! Twice the working precision: a number as an unevaluated sum of two, with about 32 digits.
 //!
-//! The algorithms are those of Joldes, Muller and Popescu (2017). They are loops without calls, so that they become vector code
-//! where they run over lanes. A product needs the fused multiply-add; machines without the instruction compute it in software, to
+//! The algorithms are those of Joldes, Muller and Popescu (2017). They call no functions, so that a loop of them over lanes becomes
+//! vector code. A product needs the fused multiply-add; machines without the instruction compute it in software, to
 //! the same bits.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -58,7 +58,7 @@ impl Twice {
         Self { high, low: a.mul_add(b, -high) }
     }
 
-    /// Computes the square root; it is 0 where the number is not positive.
+    /// Computes the square root, and 0 where the number is not positive.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         let root = self.high.max(0.0).sqrt();

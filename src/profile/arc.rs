@@ -48,7 +48,7 @@ fn finite_or_none<S: Serializer>(radius: &f64, serializer: S) -> std::result::Re
     Some(*radius).filter(|radius| radius.is_finite()).serialize(serializer)
 }
 
-/// Reads what [`finite_or_none`] stores.
+/// Reads a radius as [`finite_or_none`] stores it: an absent one is that of a line.
 fn infinite_where_none<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
@@ -97,7 +97,7 @@ impl Arc {
     /// transitions). `radius` \[mm\] is signed; it is ∞ for a line.
     ///
     /// # Errors
-    /// A `to_x` that is not beyond the start, or not reached before the tangent is vertical.
+    /// A `to_x` that is not finite, not beyond the start, or not reached before the tangent is vertical.
     pub fn tangent_at(start: Station, radius: f64, to_x: f64) -> Result<Self> {
         let run = finite("to_x", to_x)? - start.x;
         if run <= 0.0 {
@@ -183,7 +183,7 @@ impl Arc {
 }
 
 /// Returns the station of a circle at abscissa x; `radius` is negative for the upper half. The height is rounded only once,
-/// because b and r may be thousands of times larger than their sum.
+/// because b and r may be thousands of times larger than it.
 fn station_on_circle([a, b]: [f64; 2], radius: f64, x: f64) -> Result<Station> {
     let beyond = (x - a).abs() - radius.abs();
     if beyond > VERTICAL_END_ROUNDINGS * f64::EPSILON * (radius.abs() + a.abs()) {

@@ -87,8 +87,8 @@ pub struct PolynomialData {
 }
 
 impl SegmentData {
-    /// Gives the segment in mm, of one in a unit of this length \[mm\]. The coefficients of a polynomial are those of z over x in
-    /// that unit.
+    /// Gives this segment in mm, where its numbers are in a unit of `unit` mm. The coefficients of a polynomial are those of z over x
+    /// in that unit.
     #[must_use]
     pub fn in_millimetres(&self, unit: f64) -> Self {
         let point = |point: Option<[f64; 2]>| point.map(|point| point.map(|value| unit * value));

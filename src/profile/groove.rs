@@ -1,4 +1,4 @@
-//! Finds grooves, and so the part on which wheels run of a grooved rail, a crossing or a guarded rail.
+//! Finds grooves, and so the part of a grooved rail, a crossing or a guarded rail on which wheels run.
 
 /// Least depth \[mm\] of a groove below both its tops. Flangeways are at least 38 mm deep; hollow crowns, worn ones too,
 /// are less than 5 mm deep.

@@ -4,8 +4,8 @@ use nalgebra::UnitComplex;
 
 use crate::error::{Error, Result, finite};
 
-/// Largest rise over run of an inclination: 89.94°. A steeper one stands upright to a tenth of a millimetre over a rail's head,
-/// and its cosine goes below the rounding of its sine, so that profiles lose their order along x.
+/// Largest rise over run of an inclination: 89.94°. A steeper one is upright to a tenth of a millimetre over a rail's head. Much
+/// steeper ones have a cosine below the rounding of their sine, so that profiles lose their order along x.
 const STEEPEST: f64 = 1e3;
 
 /// Makes the rotation whose tangent is rise/run, within ±90°. It is counter-clockwise for a positive quotient.

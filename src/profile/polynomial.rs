@@ -111,7 +111,7 @@ impl Polynomial {
         2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
     }
 
-    /// Returns the coefficients of x and z \[mm\] in powers of the share of a part, which goes over these shares of the range.
+    /// Returns the coefficients of x and z \[mm\] in powers of a parameter that goes from 0 to 1 between these shares of the range.
     pub(crate) fn over(&self, shares: Interval) -> [Vec<f64>; 2] {
         let unit = shares.width() * self.t.width();
         [&self.x, &self.z].map(|c| {
@@ -126,9 +126,9 @@ impl Polynomial {
         dx.hypot(dz)
     }
 
-    /// Returns the curve plus a parabola. The parabola begins at t = `near` and adds `change` \[1/mm\] to the curvature;
-    /// this is exact at t = `at`. It is along z for a graph z(x), so that the sum stays a graph; otherwise it is along the
-    /// normal at `at`.
+    /// Returns the curve plus a parabola that begins at t = `near`. To first order it adds `change` \[1/mm\] to the curvature, for
+    /// the speed and direction that the curve has at t = `at`. It is along z for a graph z(x), so that the sum stays a graph;
+    /// otherwise it is along the normal at `at`.
     pub(super) fn curved(&self, near: f64, at: f64, change: f64) -> Self {
         let [dx, dz] = self.rates(at);
         let speed = dx.hypot(dz);

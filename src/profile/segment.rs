@@ -47,7 +47,7 @@ impl Segment {
         }
     }
 
-    /// Tells whether all numbers of the curve are finite and there are enough of them: what its constructors make.
+    /// Tells whether the curve has finite ends, and a radius or enough coefficients, as its constructors ensure.
     pub(super) fn is_sound(&self) -> bool {
         let enough = match &self.shape {
             Shape::Arc(arc) => !arc.radius.is_nan() && arc.radius != 0.0,

@@ -16,9 +16,9 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// Returns the point \[x, z\] at a share of the way to the next mark: of the cubic that has both points and tangents, off the curve by a
-    /// 384th of its length⁴ times the derivative of the curvature twice over. The two sides of a joint are one point, and a step of a
-    /// drawing is straight.
+    /// Returns the point \[x, z\] \[mm\] at a share (0 to 1) of the way to the next mark, on the cubic through both points with their
+    /// tangents. It is off the curve by about (κ″ − κ³)a⁴/384, with a the distance of the marks. The two sides of a joint are one
+    /// point, and a step of a drawing is straight.
     pub fn between(&self, next: &Self, share: f64) -> [f64; 2] {
         let (a, b) = (self.station, next.station);
         let pull = if self.segment == next.segment { next.s - self.s } else { 0.0 };
@@ -42,14 +42,14 @@ pub struct Beside {
     pub across: f64,
 }
 
-/// Most steps of a trace. A profile of 300 mm has them a third of a micrometre apart.
+/// Largest number of steps of a trace. On a profile of 300 mm they are a third of a micrometre long.
 const MOST_STEPS: f64 = 1e6;
 
-/// Returns marks at most `step` \[mm\] apart, in order of ascending s. Each joint has a mark on either side. A profile that is
-/// longer than a million steps has a million: compare the s of neighbours where that matters.
+/// Returns marks at most `step` \[mm\] apart, in order of ascending s. Each joint has a mark on either side. A step below a
+/// millionth of the profile's length is replaced by that: compare the s of neighbours where it matters.
 ///
-/// Accuracy: the arc length is exact on arcs. On polynomials it is a sum over chords of `step`, with a relative error of
-/// 1e-5 for 0.1 mm on a 3 mm radius.
+/// Accuracy: s is a sum over arcs of the curvature κ at the end of each step a. Its relative error is about (aκ)⁴/200 on an arc, and
+/// a³κκ′/24 more on a polynomial.
 ///
 /// # Examples
 /// ```
@@ -113,7 +113,7 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Option<Beside> {
     Some(Beside { mark: best, s: mark.s + at.x, across })
 }
 
-/// Most marks that are looked at beyond the nearest one so far.
+/// Number of marks beyond the nearest one so far over which the search goes on.
 const LOOKED_ON: usize = 16;
 
 /// Returns the station at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
@@ -125,7 +125,7 @@ fn at_share(segment: &Segment, share: f64) -> Station {
     }
 }
 
-/// Returns the curvature there \[1/mm\].
+/// Returns the curvature \[1/mm\] at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
 fn curvature(segment: &Segment, share: f64) -> f64 {
     match &segment.shape {
         Shape::Arc(arc) => arc.curvature(),
@@ -133,7 +133,7 @@ fn curvature(segment: &Segment, share: f64) -> f64 {
     }
 }
 
-/// Returns the parameter at a share of its range.
+/// Returns a polynomial's parameter at a share (0 to 1) of its range.
 fn parameter(polynomial: &Polynomial, share: f64) -> f64 {
     polynomial.t.low + share * polynomial.t.width()
 }
@@ -147,7 +147,7 @@ fn segment_length(segment: &Segment) -> f64 {
     }
 }
 
-/// Returns into how many shares a segment is divided so that none is longer than `step` \[mm\].
+/// Returns the number of equal shares into which a segment is divided so that none is longer than `step` \[mm\].
 fn shares(segment: &Segment, step: f64) -> usize {
     let shares = |length: f64| (length / step).ceil().max(1.0) as usize;
     let polynomial = match &segment.shape {

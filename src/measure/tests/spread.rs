@@ -65,7 +65,7 @@ fn samples_are_the_same_bits_on_any_number_of_threads() -> Result<()> {
     Ok(())
 }
 
-/// A profile moved along the flange by known steps: mean, deviation and Student's interval are closed forms.
+/// A rail lowered by known steps: mean, deviation and Student's interval are closed forms.
 #[test]
 fn repeats_have_the_mean_and_the_interval_of_their_values() -> Result<()> {
     let nominal = standards::rail("60E1")?;

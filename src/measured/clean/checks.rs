@@ -153,7 +153,7 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
         let found = format!("a point {:.3} mm off the line of its neighbours", spike.height);
         Finding { fatal: spike.backwards, ..Finding::new(Check::Spike, &points[spike.at], found) }
     }));
-    // A path that runs back crosses itself everywhere, so that only its fatal findings are returned.
+    // A path that runs back crosses itself everywhere: beside a fatal finding, crossings are not sought.
     if !out.iter().any(|finding| finding.fatal) {
         out.extend(crossings(points));
     }
@@ -326,7 +326,7 @@ pub(in crate::measured) struct Spike {
 }
 
 /// Finds points off the line of their neighbours whose neighbours are off to the other side. A single wrong point has this
-/// pattern; an edge has not.
+/// pattern; an edge does not.
 pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
     /// Share of the expected distance by which a neighbour must be off to the other side. Let the point be off by h, and
     /// let o be the point beyond the neighbour. The neighbour is then off by −h·d/l, where d is its distance from o and l
@@ -342,7 +342,7 @@ pub(in crate::measured) fn spikes(points: &[Point]) -> Vec<Spike> {
             let share = distance(&points[outer], &points[j]) / distance(&points[outer], &points[k]);
             off[j] * off[k].signum() < -ANSWER * share * height
         };
-        // The end points of the path have no line of neighbours, so that nothing is asked of them.
+        // The end points of the path have no line of neighbours, so that they need not be off.
         let before = k == 1 || answers(k - 1, k - 2);
         let after = k + 2 == n || answers(k + 1, k + 2);
         if height <= SPIKE_HEIGHT || !before || !after {

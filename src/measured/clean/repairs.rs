@@ -7,8 +7,8 @@ use super::loops;
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
 
-/// Largest loop that `cut-loops` cuts, as a share of the whole path. A larger loop is no slip of the probe: nobody knows
-/// which of its parts is the profile.
+/// Largest loop that `cut-loops` cuts, as a share of the whole path. A larger loop is no slip of the probe, and
+/// which of its parts is the profile cannot be told.
 const LARGEST_LOOP: f64 = 0.1;
 /// Most places that the record lists; the count is always complete.
 const LISTED: usize = 20;

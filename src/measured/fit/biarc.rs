@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::measured::read::points::Point;
 use crate::profile::{Arc, Station};
 
-/// Largest cross product of coordinates, in roundings of them, that counts as 0: three points are then in a line.
+/// Largest distance of an arc's end from its first tangent, in roundings of the coordinates, up to which the arc is a line.
 const STRAIGHT_ROUNDINGS: f64 = 8.0;
 
 /// A chain of pairs of arcs.

@@ -94,10 +94,10 @@ fn beyond(points: impl Iterator<Item = Point>, reach: f64) -> Vec<Point> {
 }
 
 impl SplinePiece {
-    /// Fits the piece in two passes. The first pass uses the chords of the points as arc length; noise makes them too long.
-    /// The second pass uses the chords of the first result. Where noise is as large as the distance of the points, the
-    /// first result has chords below a tenth of the points' chords, which measure nothing. The first result is then kept:
-    /// its arc length is too long, so that its cut-off wavelength is too short by the same factor.
+    /// Fits the piece, in one pass if it interpolates and in two if it smooths. The first pass uses the chords of the points as arc
+    /// length; noise makes them too long. The second pass uses the chords of the first result. Where noise is as large as the
+    /// distance of the points, the first result has chords below a tenth of the points' chords, which measure nothing. The first
+    /// result is then kept: its arc length is too long, so that its cut-off wavelength is too short by the same factor.
     fn new(
         points: &[Point],
         [from, to]: [usize; 2],

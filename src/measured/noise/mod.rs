@@ -84,7 +84,7 @@ impl Remeasured {
     /// Takes points every `step` \[mm\] along a profile, in the profile's own axes.
     ///
     /// # Errors
-    /// A step that is not positive, or longer than the profile.
+    /// A step that is not positive, or longer than half of the profile.
     pub fn new(profile: &Profile, side: Side, step: f64) -> Result<Self> {
         if !(step > 0.0 && step.is_finite()) {
             return Err(Error::new("step", step.to_string(), "a positive number of mm", "correct it"));
@@ -146,7 +146,7 @@ impl Remeasured {
 pub struct Sampled<const N: usize> {
     /// Number of samples of which nothing could be computed.
     pub failed: usize,
-    /// The spread of each quantity; `None` of one that fewer than [`LEAST_SAMPLES`] samples have.
+    /// The spread of each quantity; `None` for a quantity that fewer than [`LEAST_SAMPLES`] samples have.
     pub spreads: [Option<Spread>; N],
 }
 

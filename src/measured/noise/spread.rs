@@ -39,7 +39,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Finds the spread of samples; those that are not finite are left out. `None` of fewer than [`LEAST_SAMPLES`].
+    /// Finds the spread of samples; those that are not finite are left out. `None` for fewer than [`LEAST_SAMPLES`].
     pub fn of(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = samples.into_iter().filter(|value| value.is_finite()).collect();
         if values.len() < LEAST_SAMPLES {
@@ -56,7 +56,7 @@ impl Spread {
         Some(Self::new(values.len(), mean, deviation, [(low, low_error), (high, high_error)]))
     }
 
-    /// Finds the spread of repeated measurements; those that are not finite are left out. `None` of fewer than two.
+    /// Finds the spread of repeated measurements; those that are not finite are left out. `None` for fewer than two.
     ///
     /// Method: the interval is that of a normal distribution for one further measurement, mean ± t s √(1 + 1/n) with Student's t of
     /// n − 1 degrees of freedom; the errors of its ends are those of mean and deviation together.

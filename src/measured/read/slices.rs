@@ -23,8 +23,8 @@ use crate::profile::Side;
 pub const MOST_SLICES: usize = 10_000;
 /// Most features of a slice, as CONTACT has it.
 const MOST_FEATURES: usize = 999;
-/// Least distance of two slices \[mm or rad\], as CONTACT has it; and largest difference between the two places at which
-/// a file names the position of a slice.
+/// Least distance of two slices \[mm or rad\], as CONTACT has it; and largest difference between the position of a slice and
+/// that which the row of its features gives.
 const LEAST_APART: f64 = 1e-3;
 
 /// One slice of a list.
@@ -110,7 +110,7 @@ impl SliceList {
     }
 }
 
-/// Reads the method of interpolation, which sections do not use: whether it approximates. Surfaces with perturbations are refused.
+/// Reads whether the method of interpolation approximates, with a note that sections do not use the method. Refuses perturbations.
 fn method(row: &Group<'_>) -> Result<(bool, Vec<Note>)> {
     let method = row.count(0, "a method of interpolation", 1..=2)?;
     if let Some(kind) = row.optional(1).filter(|kind| *kind != 0) {
@@ -133,10 +133,10 @@ fn slice(row: &Group<'_>, position: impl Fn(f64) -> f64) -> Result<ListedSlice> 
     Ok(ListedSlice { at, file: file.into(), features: Vec::new(), line: row.line.number })
 }
 
-/// Rejects positions that do not ascend, and wheels that are more than once around.
+/// Rejects positions that do not ascend, and angles beyond ±π, unless they go all around a wheel and stay within ±1.5 π.
 fn check_positions(slices: &[ListedSlice], side: Side) -> Result<()> {
     use std::f64::consts::PI;
-    /// What files with three or four digits of π leave open \[rad\].
+    /// Rounding of π \[rad\] in files that give it with four decimals.
     const DIGITS: f64 = 1e-4;
     let unit = unit(side);
     for pair in slices.windows(2) {
@@ -234,7 +234,7 @@ impl Group<'_> {
     }
 }
 
-/// Returns a line without the comment at its end; marks between single quotes are none.
+/// Returns a line without the comment at its end; marks between single quotes do not count.
 fn without_comment(line: Line<'_>) -> Line<'_> {
     let mut quoted = false;
     let mark = line.text.char_indices().find(|(_, c)| {
@@ -244,7 +244,7 @@ fn without_comment(line: Line<'_>) -> Line<'_> {
     Line { text: mark.map_or(line.text, |(at, _)| line.text[..at].trim_end()), ..line }
 }
 
-/// Splits a line at white space and commas, but for what stands between single quotes.
+/// Splits a line at white space and commas that are not between single quotes.
 fn split(text: &str) -> impl Iterator<Item = &str> {
     let mut quoted = false;
     let words = text.split(move |c: char| {

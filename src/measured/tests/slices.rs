@@ -9,7 +9,7 @@ fn options(text: &str) -> Options {
     toml::from_str(text).unwrap_or_default()
 }
 
-/// A rail of one arc, a chord of 80 mm of a radius, sampled at this many steps; lowered by z.
+/// Returns the file of a rail of one arc over a chord of 80 mm, in this many steps, lowered by z \[mm\].
 fn arc(radius: f64, steps: i32, z: f64) -> Vec<u8> {
     let point = |k: i32| {
         let x = 80.0 * f64::from(k) / f64::from(steps) - 40.0;
@@ -52,7 +52,8 @@ fn midway_between_equal_slices_nothing_changes() -> Result<()> {
     Ok(())
 }
 
-/// Slices that are lowered evenly give sections that are, whatever their spacing of points: up to the polygon's sagitta.
+/// Between two slices of one shape at different heights, the height of a section is in proportion, whatever the spacing of their
+/// points, to within the polygon's sagitta.
 #[test]
 fn between_slices_points_move_in_straight_lines() -> Result<()> {
     let files = [("a.txt", arc(300.0, 160, 0.0)), ("b.txt", arc(300.0, 100, 2.0))];

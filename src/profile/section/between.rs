@@ -17,7 +17,8 @@ const SLOPE_NOISE: f64 = 1e-13;
 /// Method: for lines and arcs the sines of the two tangent angles are linear in ξ, so that there is at most one such point,
 /// in closed form. Otherwise bounds of both slopes prove that there is no point, or all sign changes of their difference are found, or
 /// beside an upright end those of the sine of the angle between the tangents.
-/// Degenerate case: if the gap changes by less than its rounding, the result is the middle of the interval.
+/// Degenerate cases: two arcs of equal curvature, or two lines, give none. If the gap to a polynomial changes by less than its
+/// rounding, the result is the middle of the interval.
 pub fn stationary_points(rail: &Branch, wheel: &Branch, a: f64, b: f64) -> Vec<f64> {
     if let (BranchShape::Arc(rail), BranchShape::Arc(wheel)) = (&rail.shape, &wheel.shape) {
         return parallel(rail, wheel).filter(|&xi| xi > a && xi < b).into_iter().collect();
@@ -70,10 +71,11 @@ impl pulp::WithSimd for SlopeDifferences<'_> {
     }
 }
 
-/// Returns all ξ between the ends of a range \[mm\] where a branch has the direction of a line \[n_ξ, n_ζ\], ascending.
+/// Returns all ξ between the ends of a range \[mm\] where a branch is parallel to a line of direction \[n_ξ, n_ζ\], ascending.
 ///
 /// Method: on an arc the sine of the tangent angle is linear in ξ. On a polynomial it is where the component across the line
-/// changes its sign. Degenerate case: a branch that has the direction everywhere gives the middle of the range.
+/// changes its sign. Degenerate cases: a polynomial that has the direction everywhere gives the middle of the range; a line gives
+/// nothing.
 pub fn parallel_to(branch: &Branch, n: [f64; 2], over: Interval) -> Vec<f64> {
     let mut found = Vec::new();
     match &branch.shape {

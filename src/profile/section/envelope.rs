@@ -57,7 +57,7 @@ fn without_other_heads(branches: &[Branch], outer: Vec<(Interval, usize)>) -> Ve
     let reach = Interval::new(sheet[0].xi.low, sheet[sheet.len() - 1].xi.high);
     let mut other_head = vec![false; outer.len()];
     let right = outer.partition_point(|(xi, _)| xi.high <= 0.0);
-    // Away from C in both directions; the interval over C itself is looked at from either side.
+    // Away from C in both directions; the interval over C itself is visited from either side.
     let ways: [(Vec<usize>, usize); 2] =
         [((right..outer.len()).collect(), 0), ((0..(right + 1).min(outer.len())).rev().collect(), 1)];
     for (order, near) in ways {
@@ -115,7 +115,8 @@ fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
     Some(first..last + 1)
 }
 
-/// Returns the indices of the pieces that do not begin where the piece before ends, with heights equal to `rounding` \[mm\].
+/// Returns the indices of the pieces that begin at another ξ than where the piece before ends, or whose heights there differ by more
+/// than `rounding` \[mm\].
 pub(super) fn steps(pieces: &[Piece], rounding: f64) -> Vec<usize> {
     let joins = |[before, piece]: [&Piece; 2]| {
         before.xi.high == piece.xi.low && (piece.heights[0] - before.heights[1]).abs() <= rounding

@@ -184,8 +184,8 @@ impl Section {
     }
 }
 
-/// Makes the branches of a profile from left to right. Neighbours that are one surface share the ξ of their joint, unless they are
-/// apart by more than `rounding` \[mm\].
+/// Makes the branches of a profile from left to right. Neighbours that are one surface share the ξ of their joint. A segment without
+/// a branch between them does not separate them if it runs over at most `rounding` \[mm\] of ξ.
 fn branches(
     profile: &Profile,
     view: &Arc<View>,

@@ -16,7 +16,7 @@ const QUADRATIC: f64 = 1e-4 * 1e-4;
 /// Most Newton steps. More are needed only where the branch is nearly vertical.
 const STEPS: usize = 10;
 
-/// Least multiple of ξ along a chord. The chord of a parabola to its vertex is half as long as the tangent promises.
+/// Least multiple of ξ along a chord. The chord of a parabola to its vertex has half the run of the tangent.
 const LEAST_STRETCH: f64 = 0.5;
 
 /// N points of branches of one shape, from which chords are drawn.

@@ -9,7 +9,7 @@ use super::super::drawing::{ArcData, HalfData, LineData, PolynomialData, Segment
 use super::super::{Profile, Segment};
 use crate::error::{Error, Result};
 
-/// What the names of the family look like.
+/// Form of the family's names.
 pub const PATTERN: &str = "EN13715-1:40-hH-eE-S% or EN13715-S1002-hH-eE-S%";
 /// The source of all its members.
 pub const SOURCE: &str =
@@ -20,7 +20,7 @@ const THICKNESSES: RangeInclusive<f64> = 28.5..=32.5;
 const SLOPES: RangeInclusive<f64> = 6.7..=15.0;
 /// Outer slope of a name that gives none.
 const USUAL_SLOPE: &str = "15%";
-/// Where the formulas have the flange: thinner ones lie as much farther left as they are thinner.
+/// Flange thickness \[mm\] for which the formulas hold. The front of a thinner flange lies farther left by the difference.
 const FULL_THICKNESS: f64 = 32.5;
 /// End of the tread and of the chamfer behind it \[mm\], of a wheel 135 mm wide.
 const ENDS: [f64; 2] = [60.0, 65.0];
@@ -70,7 +70,7 @@ struct FamilyMember<'a> {
 /// Returns the wheel with this name, or `None` if the name is not of the family. `s1002` are the zones of S1002.
 ///
 /// # Errors
-/// A height, thickness or slope that the standard has not.
+/// A height, thickness or slope that the standard does not have.
 pub(super) fn wheel(name: &str, s1002: &[SegmentData]) -> Option<Result<Profile>> {
     let (tread, rest) = name.strip_prefix("EN13715-")?.split_once("-h")?;
     let (height, rest) = rest.split_once("-e")?;

@@ -24,7 +24,7 @@ struct WheelFile {
     wheels: BTreeMap<String, WheelData>,
 }
 
-/// A rail head as EN 13674 draws it, from crown to corner and symmetric.
+/// A rail head as EN 13674 draws it: symmetric, from crown to corner.
 #[derive(Debug, Clone, Deserialize)]
 struct RailData {
     /// Radii from the crown outwards \[mm\].
@@ -35,9 +35,9 @@ struct RailData {
     flank_dx_per_dz: f64,
     /// Radius between flank and underside \[mm\].
     lower_fillet_radius: f64,
-    /// Run per unit of fall of the underside: z = `underside_apex_z` + |x|/this.
+    /// Run per unit of rise of the underside, outwards: z = `underside_apex_z` + |x|/this.
     underside_1_to: f64,
-    /// Where the two undersides meet \[mm\].
+    /// z of the point where both undersides meet \[mm\].
     underside_apex_z: f64,
     /// Published numbers that the chain must reproduce.
     #[cfg(test)]
