@@ -2,7 +2,7 @@
 
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::padded;
-use crate::numerics::polynomial::value_and_slope;
+use crate::numerics::polynomial::{derivatives, value_and_slope};
 use crate::numerics::quadrature::smooth_integrals;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
@@ -31,6 +31,8 @@ pub struct RailPoint {
     pub cos: f64,
     /// sin α.
     pub sin: f64,
+    /// dα/dσ \[1/mm\]: the curvature, positive where the hollow side is up.
+    pub curvature: f64,
     /// Whether the point lies on the segment through C.
     pub on_contact: bool,
 }
@@ -127,9 +129,9 @@ impl<'a> RailArcLength<'a> {
     pub fn point(&self, sigma: f64) -> Option<RailPoint> {
         let index = self.stretches.partition_point(|stretch| stretch.sigma.high < sigma);
         let stretch = self.stretches.get(index).filter(|stretch| stretch.sigma.low <= sigma)?;
-        let at = stretch.curve.station(sigma);
+        let (at, curvature) = stretch.curve.station_and_curvature(sigma);
         let on_contact = stretch.on_contact;
-        Some(RailPoint { sigma, xi: at.x, zeta: at.z, cos: at.cos, sin: at.sin, on_contact })
+        Some(RailPoint { sigma, xi: at.x, zeta: at.z, cos: at.cos, sin: at.sin, curvature, on_contact })
     }
 
     /// Finds σ \[mm\] of the point at ξ \[mm\]; NaN beyond the reach.
@@ -181,8 +183,8 @@ fn run_length(branch: &PolynomialBranch, a: f64, b: f64) -> f64 {
 }
 
 impl StretchCurve<'_> {
-    /// Returns the point and tangent at σ \[mm\].
-    fn station(&self, sigma: f64) -> Station {
+    /// Returns the point, tangent and curvature \[1/mm\] at σ \[mm\].
+    fn station_and_curvature(&self, sigma: f64) -> (Station, f64) {
         match self {
             Self::Arc { begin, from, radius } => {
                 let length = sigma - begin;
@@ -192,13 +194,15 @@ impl StretchCurve<'_> {
                 let chord = if turn == 0.0 { length } else { 2.0 * radius * sin_half };
                 let sin = 2.0 * sin_half * cos_half;
                 let cos = (cos_half - sin_half) * (cos_half + sin_half);
-                Station { x: chord * cos_half, z: chord * sin_half, cos, sin }.placed_by(from)
+                let station = Station { x: chord * cos_half, z: chord * sin_half, cos, sin };
+                (station.placed_by(from), 1.0 / radius)
             }
             Self::Polynomial { begin, t, branch } => {
                 let t = parameter(branch, *t, sigma - begin);
-                let ([x, dx], [z, dz]) = (value_and_slope(&branch.xi, t), value_and_slope(&branch.zeta, t));
+                let ([x, dx, hx], [z, dz, hz]) = (derivatives(&branch.xi, t), derivatives(&branch.zeta, t));
                 let speed = dx.hypot(dz);
-                Station { x, z, cos: dx / speed, sin: dz / speed }
+                let curvature = (dx * hz - dz * hx) / speed.powi(3);
+                (Station { x, z, cos: dx / speed, sin: dz / speed }, curvature)
             }
         }
     }

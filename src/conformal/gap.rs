@@ -9,6 +9,8 @@ use super::span::RayPoint;
 use crate::lofted::{Feet, FramedLoft, LoftFoot};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
+use crate::profile::Section;
+use crate::separation::GapSlopes;
 
 /// Number of equal steps in which the largest and least angle of a range are sought.
 const ANGLE_STEPS: usize = 128;
@@ -73,6 +75,8 @@ pub struct GapColumn {
     wheel: Option<Feet<Box<FramedLoft>>>,
     /// Those on a rail that varies; `None` on one that is swept.
     below: Option<Feet<Box<FramedLoft>>>,
+    /// The column of a roller under its own profile, upside down; `None` on a rail.
+    under: Option<Box<GapColumn>>,
 }
 
 /// The wheel's point on a line along the rail's normal.
@@ -102,7 +106,11 @@ impl<'a> NormalGap<'a> {
             Some(Feet::new(Box::new(turned)))
         };
         let (wheel, below) = (feet(self.placement.lofted_wheel()), feet(self.placement.lofted_rail()));
-        Some(GapColumn { rail, wheel, below })
+        let under = match &self.under {
+            Some(under) => Some(Box::new(under.column(sigma)?)),
+            None => None,
+        };
+        Some(GapColumn { rail, wheel, below, under })
     }
 
     /// Computes t(σ, η) \[mm\]: positive apart, negative where the bodies overlap, NaN beyond the rail's range of σ and
@@ -123,21 +131,40 @@ impl<'a> NormalGap<'a> {
 
     /// Computes ∂t/∂η at one point; NaN where t is.
     pub fn slope(&self, sigma: f64, eta: f64) -> f64 {
-        self.column(sigma).map_or(f64::NAN, |mut column| self.slope_in(&mut column, eta))
+        let mut column = self.column(sigma);
+        column.as_mut().and_then(|column| self.slopes_in(column, eta)).map_or(f64::NAN, |at| at.slopes[1])
     }
 
-    /// Computes ∂t/∂η at η \[mm\] of a column; NaN where t is.
-    pub fn slope_in(&self, column: &mut GapColumn, eta: f64) -> f64 {
-        let above = self.wheel_point(column, eta).map_or(f64::NAN, |point| {
-            let (rail, normal) = (&column.rail, self.wheel_normal(&column.rail, &point));
-            normal.y / (rail.sin * normal.x - rail.cos * normal.z)
-        });
-        let below = match (&mut column.below, &self.under) {
-            (Some(feet), _) => feet.at(0.0, eta).map_or(f64::NAN, |foot| -foot.slopes[1]),
-            (None, Some(under)) => under.slope(column.rail.sigma, eta),
-            (None, None) => 0.0,
-        };
-        above + below
+    /// Computes t, \[∂t/∂σ, ∂t/∂η\] and the abscissae of the points met at η \[mm\] of a column; `None` where the ray misses a body.
+    ///
+    /// Method: as σ grows, the foot of the ray moves along the rail and the ray turns by dα; its other end moves by 1 − t dα/dσ along
+    /// the rail's tangent, and stays on a surface of which the normal is known.
+    pub(crate) fn slopes_in(&self, column: &mut GapColumn, eta: f64) -> Option<GapSlopes> {
+        let point = self.wheel_point(column, eta)?;
+        let (rail, normal) = (column.rail, self.wheel_normal(&column.rail, &point));
+        let (gap, down) = (point.height(), rail.sin * normal.x - rail.cos * normal.z);
+        let along = (1.0 - gap * rail.curvature) * (rail.cos * normal.x + rail.sin * normal.z) / down;
+        let mut at = GapSlopes { gap, slopes: [along, normal.y / down], abscissae: [f64::NAN; 2] };
+        if let WheelPoint::Round(point) = point {
+            at.abscissae[0] = point.abscissa;
+        }
+        if let Some(feet) = &mut column.below {
+            let foot = feet.at(0.0, eta)?;
+            at.gap -= foot.zeta;
+            at.slopes[0] -= (1.0 - foot.zeta * rail.curvature) * foot.slopes[0];
+            at.slopes[1] -= foot.slopes[1];
+        } else if let (Some(under), Some(column)) = (&self.under, &mut column.under) {
+            let below = under.slopes_in(column, eta)?;
+            at.gap += below.gap;
+            at.slopes = [at.slopes[0] + below.slopes[0], at.slopes[1] + below.slopes[1]];
+            at.abscissae[1] = below.abscissae[0];
+        }
+        Some(at)
+    }
+
+    /// Returns the sections of the wheel and of a roller; a rail has none here.
+    pub(crate) fn sections(&self) -> [Option<&'a Section>; 2] {
+        [Some(self.bodies.wheel.section), self.under.as_ref().map(|under| under.bodies.wheel.section)]
     }
 
     /// Finds the wheel's point on the line along the normal; `None` where it misses.
@@ -150,11 +177,11 @@ impl<'a> NormalGap<'a> {
 
     /// Computes how far the lower body lies below the profile of the column along its normal \[mm\]; NaN where it has no surface.
     fn below(&self, column: &mut GapColumn, eta: f64) -> f64 {
-        match (&mut column.below, &self.under) {
-            (Some(feet), _) => -feet.height(0.0, eta),
-            (None, Some(under)) => under.gap(column.rail.sigma, eta),
-            (None, None) => 0.0,
+        if let Some(feet) = &mut column.below {
+            return -feet.height(0.0, eta);
         }
+        let under = self.under.as_ref().zip(column.under.as_mut());
+        under.map_or(0.0, |(under, column)| under.gap_in(column, eta))
     }
 
     /// Returns α(σ) \[rad\], the angle of the rail's outward normal from ζ, positive counter-clockwise; NaN beyond the range of

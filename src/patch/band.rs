@@ -16,7 +16,7 @@ use crate::profile::Section;
 const STEP_ROUNDINGS: f64 = 64.0;
 
 /// Length, as a share of a band, of what lies between two corners that are one.
-const ONE_CORNER: f64 = 1e-11;
+pub(super) const ONE_CORNER: f64 = 1e-11;
 
 /// Rounding of s in units of the rounding of the coordinates.
 const ROUNDINGS: f64 = 4.0;
@@ -88,25 +88,28 @@ impl Band {
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
-        let mut finder = EdgeFinder::new(outline.slicer.placement(), outline.slicer.approach());
+        let over_plane = outline.slicer.by_roots.is_none() && outline.slicer.varying.is_none();
+        let mut finder =
+            over_plane.then(|| EdgeFinder::new(outline.slicer.placement(), outline.slicer.approach()));
         // ξ, the square of half the width and the middle of the last two slices that were found one by one.
         let mut known = [[f64::NAN; 3]; 2];
         let edges = |xi: &Lanes| {
-            let many = if outline.slicer.has_one_valley(xi) { finder.edges(xi) } else { None };
-            many.unwrap_or_else(|| {
-                let one = |xi: f64| {
-                    let valley = self.valley(xi);
-                    let near = outline.slicer.edges_near(xi, extrapolated(&known, xi));
-                    let edges = near
-                        .or_else(|| outline.slicer.edges(xi, valley).map(|both| both.map(|edge| edge.eta)));
-                    let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
-                    let half = (high - low) / 2.0;
-                    known = [known[1], [xi, half * half, low + half]];
-                    [low, high]
-                };
-                let both = xi.map(one);
-                [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
-            })
+            let many = finder.as_mut().and_then(|finder| finder.edges(xi));
+            many.filter(|edges| outline.slicer.has_one_valley(xi, edges, |xi| self.valley(xi)))
+                .unwrap_or_else(|| {
+                    let one = |xi: f64| {
+                        let valley = self.valley(xi);
+                        let near = outline.slicer.edges_near(xi, valley, extrapolated(&known, xi));
+                        let edges = near.or_else(|| {
+                            outline.slicer.edges(xi, valley).map(|both| both.map(|edge| edge.eta))
+                        });
+                        let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
+                        known = [known[1], halved(xi, [low, high])];
+                        [low, high]
+                    };
+                    let both = xi.map(one);
+                    [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
+                })
         };
         let mut fit = StretchFit { edges, band: self.xi, zero, root, noise };
         for pair in corners.windows(2) {
@@ -314,9 +317,14 @@ impl pulp::WithSimd for EdgesAt<'_> {
     }
 }
 
-/// Returns the edges \[mm\] at ξ that follow from two slices, each given by ξ, the square of half the width and the middle; NaN
-/// if there are none.
-fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f64) -> [f64; 2] {
+/// Returns ξ, the square of half the width and the middle of a slice: what varies smoothly up to a tip.
+pub(super) fn halved(xi: f64, [low, high]: [f64; 2]) -> [f64; 3] {
+    let half = (high - low) / 2.0;
+    [xi, half * half, low + half]
+}
+
+/// Returns the edges \[mm\] at ξ that follow from two slices, given as [`halved`]; NaN if there are none.
+pub(super) fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f64) -> [f64; 2] {
     let share = (xi - y) / (y - x);
     let half = (other + (other - square) * share).sqrt();
     let middle = last + (last - middle) * share;

@@ -5,33 +5,45 @@
 //! the sum of the bodies' curvatures around their axles allows: κ sin²χ > 1/ϱ_W + 1/ϱ_R.
 
 use super::level::Level;
-use super::skewed::slicer::{Edge, STEP_ROUNDINGS};
+use super::skewed::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
+use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
-use crate::placement::Placement;
+use crate::placement::{Body, Placement};
+use crate::separation::GapSlopes;
 
 /// Factor by which an end of a slice is sought farther out.
 const WIDER: f64 = 1.25;
+
+/// Most secant steps to the lowest place of a line. The gap is nearly a parabola along it.
+const SECANTS: usize = 10;
+
+/// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
+const SLOPE_ROUNDINGS: f64 = 8.0;
 
 /// The slices of a placed pair at one approach.
 #[derive(Debug)]
 pub(super) struct ByRoots<'a> {
     pub(super) level: Level<'a>,
     /// Whether the lowest place along η may be off η = 0.
-    skewed: bool,
+    pub(super) skewed: bool,
     /// Approach δ \[mm\].
     approach: f64,
-    /// Coefficient \[1/mm\] of η² of two cylinders with the radii at C.
+    /// Coefficient \[1/mm\] of η² at C, without skew.
     opening: f64,
     /// Least step of a surface \[mm\].
     step: f64,
+    /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
+    steps: [Vec<Interval>; 2],
 }
 
 impl<'a> ByRoots<'a> {
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
     pub(super) fn new(placement: &Placement, approach: f64, level: Level<'a>) -> Self {
-        let around = placement.rolling_radius().recip() + placement.rail().axle_distance().recip();
+        let around = |body: &Body| body.section.frame.cos / body.axle_distance();
+        let opening = 0.5 * (around(placement.wheel()) + around(placement.rail()));
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
-        Self { level, skewed: placement.skew() != 0.0, approach, opening: 0.5 * around, step }
+        let steps = level.sections().map(|section| section.map_or_else(Vec::new, |section| section.steps()));
+        Self { level, skewed: placement.skew() != 0.0, approach, opening, step, steps }
     }
 
     /// Returns η \[mm\] of the least gap at ξ; NaN where a body has no surface.
@@ -43,7 +55,11 @@ impl<'a> ByRoots<'a> {
         if at_middle == 0.0 || at_middle.is_nan() {
             return 0.0 * at_middle;
         }
-        let (mut near, mut far) = (0.0, -at_middle / self.opening);
+        let first = -at_middle / self.opening;
+        if let Some(lowest) = self.lowest_by_secants(xi, at_middle, 0.5 * first) {
+            return lowest;
+        }
+        let (mut near, mut far) = (0.0, first);
         while self.level.slope(xi, far) * at_middle > 0.0 {
             (near, far) = (far, WIDER * far);
         }
@@ -52,6 +68,41 @@ impl<'a> ByRoots<'a> {
         }
         // Without a root the gap falls up to the end of the surface.
         bracketed(|eta| self.level.slope(xi, eta), near, far).unwrap_or(far)
+    }
+
+    /// Returns η \[mm\] of the least gap at ξ from its slope at η = 0 and a guess; `None` where the steps do not settle.
+    fn lowest_by_secants(&mut self, xi: f64, at_middle: f64, guess: f64) -> Option<f64> {
+        let (mut last, mut before, mut eta) = (0.0, at_middle, guess);
+        for _ in 0..SECANTS {
+            let slope = self.level.slope(xi, eta);
+            if slope.is_nan() && last == 0.0 {
+                // The first guess may lie off a body.
+                eta /= 2.0;
+                continue;
+            }
+            if slope.abs() <= SLOPE_ROUNDINGS * f64::EPSILON {
+                return Some(eta);
+            }
+            // The gap opens as η grows.
+            let opens = (slope - before) * (eta - last) > 0.0;
+            if !opens {
+                return None;
+            }
+            let step = slope * ((eta - last) / (slope - before));
+            (last, before, eta) = (eta, slope, eta - step);
+            if step.abs() <= QUADRATIC * guess.abs() {
+                return Some(eta);
+            }
+        }
+        None
+    }
+
+    /// Returns whether the whole line of ξ is surely farther apart than δ: the lowest place of a parabola with the gap and slope at η = 0
+    /// lies a quarter as far below as is allowed for. `None` where a body has no surface at η = 0.
+    pub(super) fn is_apart(&mut self, xi: f64) -> Option<bool> {
+        let allowed = if self.skewed { self.opening.recip() } else { 0.0 };
+        let GapSlopes { gap, slopes: [_, across], .. } = self.level.at(xi, 0.0)?;
+        Some(gap - allowed * across * across > self.approach)
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.
@@ -92,5 +143,40 @@ impl<'a> ByRoots<'a> {
         let eta = lowest + bracketed(|off| miss(lowest + off), near, far).unwrap_or(far);
         let over = miss(eta).abs();
         Edge { eta, ledge: over > self.step }
+    }
+
+    /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess. Returns `None` unless both settle next to the guess, the
+    /// gap rises outwards there, and no surface steps between them.
+    pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
+        let (upper, ending) = self.edge_near(xi, guess, 1)?;
+        let (lower, beginning) = if self.skewed { self.edge_near(xi, guess, 0)? } else { (-upper, ending) };
+        if self.steps.iter().all(Vec::is_empty) {
+            return Some([lower, upper]);
+        }
+        let between = self.level.at(xi, lower + (upper - lower) / 2.0)?.abscissae;
+        let stepped = (0..2).any(|body| {
+            let over = Interval::around([beginning[body], between[body], ending[body]]);
+            // Between these three places the line moves along a profile like a parabola.
+            self.steps[body].iter().any(|step| step.meets(over.grown(over.width())))
+        });
+        (!stepped).then_some([lower, upper])
+    }
+
+    /// Returns one end of the slice at ξ \[mm\] by Newton's steps from a guess of both, and the abscissae of the profiles' points there.
+    pub(super) fn edge_near(
+        &mut self,
+        xi: f64,
+        [low, high]: [f64; 2],
+        side: usize,
+    ) -> Option<(f64, [f64; 2])> {
+        let (guess, outward) = ([low, high][side], [-1.0, 1.0][side]);
+        let mut abscissae = [f64::NAN; 2];
+        let miss = |eta: f64| {
+            let at = self.level.at(xi, eta)?;
+            abscissae = at.abscissae;
+            Some([at.gap - self.approach, at.slopes[1]])
+        };
+        let eta = newton_from(miss, guess, outward, NEAR_GUESS * (high - low))?;
+        Some((eta, abscissae))
     }
 }

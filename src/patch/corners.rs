@@ -1,10 +1,11 @@
 //! Finds where the boundary of a patch may have a corner, and where it turns back in η.
 
-use super::band::Band;
+use super::band::{Band, ONE_CORNER, extrapolated, halved};
+use super::by_roots::ByRoots;
 use super::loops::Rows;
 use super::outline::Outline;
 use crate::numerics::interval::Interval;
-use crate::numerics::roots::{bracketed, last_where};
+use crate::numerics::roots::{bracketed, change, last_where};
 
 /// Distance from a band up to which joints of the wheel are examined, as a multiple of the band's depth × sinθ. It is
 /// enough for slopes up to 80°. A joint beyond it that is missed only costs the quadrature some panels.
@@ -12,6 +13,9 @@ const FAR_JOINTS: f64 = 16.0;
 
 /// Number of intervals of a circle in which a root of s = δ is sought. Two roots within one interval are missed.
 const CIRCLE_INTERVALS: usize = 8;
+
+/// Number of steps along a band between which an edge is followed from joint to joint.
+const JOINT_PLACES: usize = 32;
 
 /// Most doublings of the bracket of a sagitta.
 const DOUBLINGS: usize = 40;
@@ -24,10 +28,6 @@ const DOUBLINGS: usize = 40;
 pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
     let placement = outline.slicer.placement();
     let (approach, rail) = (outline.slicer.approach(), &placement.rail().section);
-    if outline.slicer.by_roots.is_some() {
-        // The boundary's interpolants find these corners by themselves.
-        return;
-    }
     let frame = placement.wheel().section.frame;
     let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
     for (p, height) in placement.wheel().section.joints(band.xi.grown(far)) {
@@ -71,6 +71,87 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: Interval, corners:
             before = here;
         }
     });
+}
+
+/// Appends the ξ or σ inside a band at which an edge passes a joint of the wheel or of a roller, where slices are found by roots.
+///
+/// Method: the abscissae of the profiles' points under both edges are followed from tip to tip; between two places on different sides
+/// of a joint a root is sought. Degenerate case: a joint that an edge passes twice between two of these places is left to the
+/// boundary's interpolants.
+pub(super) fn over_joints(by_roots: &mut ByRoots<'_>, band: &Band, corners: &mut Vec<f64>) {
+    let grading = band.grading();
+    let mut trail = JointTrail { by_roots, known: [[f64::NAN; 3]; 2] };
+    let mut before = trail.feet(band.xi.low);
+    for k in 1..=JOINT_PLACES {
+        let xi = if k == JOINT_PLACES { band.xi.high } else { grading.xi(k as f64 / JOINT_PLACES as f64) };
+        let here = trail.feet(xi);
+        if let (Some(before), Some(here)) = (&before, &here) {
+            trail.between([before, here], ONE_CORNER * band.xi.width(), corners);
+        }
+        before = here;
+    }
+    corners.retain(|xi| band.xi.surrounds(*xi));
+}
+
+/// Both edges of a slice, and the profiles' points under them.
+struct EdgeFeet {
+    /// ξ or σ \[mm\].
+    xi: f64,
+    /// η \[mm\].
+    edges: [f64; 2],
+    /// For each edge the abscissae on the wheel and on a roller \[mm\].
+    abscissae: [[f64; 2]; 2],
+}
+
+/// Follows the points of the profiles under the edges of a band.
+struct JointTrail<'t, 'a> {
+    by_roots: &'t mut ByRoots<'a>,
+    /// ξ, the square of half the width and the middle of two slices, from which others are guessed.
+    known: [[f64; 3]; 2],
+}
+
+impl JointTrail<'_, '_> {
+    /// Returns what lies under the edges at ξ; `None` outside the patch.
+    fn feet(&mut self, xi: f64) -> Option<EdgeFeet> {
+        let near = self.by_roots.edges_near(xi, extrapolated(&self.known, xi));
+        let edges = near.or_else(|| Some(self.by_roots.edges(xi)?.map(|edge| edge.eta)))?;
+        self.known = [self.known[1], halved(xi, edges)];
+        let mut abscissae = [[f64::NAN; 2]; 2];
+        for (side, eta) in edges.into_iter().enumerate() {
+            abscissae[side] = self.by_roots.level.at(xi, eta)?.abscissae;
+        }
+        Some(EdgeFeet { xi, edges, abscissae })
+    }
+
+    /// Appends the ξ between two places, to within `enough` \[mm\], at which an edge passes a joint.
+    fn between(&mut self, ends: [&EdgeFeet; 2], enough: f64, corners: &mut Vec<f64>) {
+        let sides = if self.by_roots.skewed { 0..2 } else { 1..2 };
+        self.known = ends.map(|end| halved(end.xi, end.edges));
+        for (side, body) in sides.flat_map(|side| [(side, 0), (side, 1)]) {
+            let [from, to] = ends.map(|end| end.abscissae[side][body]);
+            let Some(section) = self.by_roots.level.sections()[body] else { continue };
+            let over = Interval::between(from, to);
+            let mut joints: Vec<f64> = section.joints(over).map(|(p, _)| p).collect();
+            joints.dedup();
+            for joint in joints.into_iter().filter(|joint| over.surrounds(*joint)) {
+                // Negative at the first of the two places.
+                let outwards = if from < joint { 1.0 } else { -1.0 };
+                let beyond = |xi: f64| outwards * (self.abscissa(xi, side, body) - joint);
+                corners.push(change(beyond, ends.map(|end| end.xi), enough));
+            }
+        }
+    }
+
+    /// Returns the abscissa \[mm\] of the point of one body under one edge at ξ; NaN where there is none.
+    fn abscissa(&mut self, xi: f64, side: usize, body: usize) -> f64 {
+        let near = self.by_roots.edge_near(xi, extrapolated(&self.known, xi), side);
+        let edge = match near {
+            Some((eta, _)) => Some(eta),
+            None => self.by_roots.edges(xi).map(|edges| edges[side].eta),
+        };
+        let at = edge.and_then(|eta| self.by_roots.level.at(xi, eta));
+        at.map_or(f64::NAN, |at| at.abscissae[body])
+    }
 }
 
 /// Appends the ξ between two rows at which a branch meets the edge of the window.

@@ -1,19 +1,20 @@
 //! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
 
 use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
-use crate::numerics::interval::Interval;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
-
-/// Half the step \[mm\] of a difference along σ. A turn of the gap that is found with it is off by less than 1e-6 mm, and its depth by
-/// less than rounding.
-const HALF_STEP: f64 = 1e-5;
+use crate::profile::Section;
+use crate::separation::{Evaluator, GapSlopes};
 
 /// The gap whose level δ bounds the patch.
 #[derive(Debug)]
 pub(super) enum Level<'a> {
     /// s(ξ, η).
-    Plane(Evaluator<'a>),
+    Plane {
+        /// The placed pair.
+        placement: &'a Placement,
+        /// s.
+        evaluator: Evaluator<'a>,
+    },
     /// t(σ, η) + δ (1 − cos α), which is δ where t is δ cos α.
     Rail {
         /// t.
@@ -29,7 +30,7 @@ impl<'a> Level<'a> {
     /// Makes that of a placed pair over a surface, for an approach δ \[mm\].
     pub(super) fn new(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
         match reference {
-            Reference::Plane => Self::Plane(Evaluator::new(placement)),
+            Reference::Plane => Self::Plane { placement, evaluator: Evaluator::new(placement) },
             Reference::Rail => Self::Rail { gap: NormalGap::new(placement), approach, column: None },
         }
     }
@@ -37,45 +38,58 @@ impl<'a> Level<'a> {
     /// Returns the normal gap over the rail's surface; `None` over the tangent plane.
     pub(super) fn normal_gap(&self) -> Option<&NormalGap<'a>> {
         match self {
-            Self::Plane(_) => None,
+            Self::Plane { .. } => None,
             Self::Rail { gap, .. } => Some(gap),
+        }
+    }
+
+    /// Returns the sections along which a line of constant ξ or σ moves as η grows: the wheel's, and that of a roller.
+    pub(super) fn sections(&self) -> [Option<&'a Section>; 2] {
+        match self {
+            Self::Plane { placement, .. } => {
+                [Some(&placement.wheel().section), placement.under().map(|under| &under.wheel().section)]
+            }
+            Self::Rail { gap, .. } => gap.sections(),
         }
     }
 
     /// Returns the gap \[mm\]; NaN where a body has no surface.
     pub(super) fn gap(&mut self, xi: f64, eta: f64) -> f64 {
         match self {
-            Self::Plane(evaluator) => evaluator.separation(xi, eta),
-            Self::Rail { gap, approach, column } => known(gap, column, xi).map_or(f64::NAN, |column| {
-                // 1 − cos α without a difference of nearly equal numbers.
-                let RailPoint { cos, sin, .. } = column.rail;
-                gap.gap_in(column, eta) + *approach * (sin * sin / (1.0 + cos))
-            }),
+            Self::Plane { evaluator, .. } => evaluator.separation(xi, eta),
+            Self::Rail { gap, approach, column } => known(gap, column, xi)
+                .map_or(f64::NAN, |column| gap.gap_in(column, eta) + *approach * versine(&column.rail)),
         }
     }
 
-    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap. Over the rail's surface ∂/∂σ is a difference over 2e-5 mm, which is right where the gap turns but
-    /// not to all digits.
-    pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+    /// Returns the gap, its slopes along ξ and η, and the abscissae of the profiles' points; `None` where a body has no surface.
+    pub(super) fn at(&mut self, xi: f64, eta: f64) -> Option<GapSlopes> {
         match self {
-            Self::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1,
-            Self::Rail { gap, .. } => {
-                let reach = gap.rail().reach().unwrap_or(Interval::of(f64::NAN));
-                let ends = Interval::of(xi).grown(HALF_STEP).cut(reach);
-                [ends.map(|xi| self.gap(xi, eta)).width() / ends.width(), self.slope(xi, eta)]
+            Self::Plane { evaluator, .. } => evaluator.gap_and_slopes(xi, eta),
+            Self::Rail { gap, approach, column } => {
+                let column = known(gap, column, xi)?;
+                let mut at = gap.slopes_in(column, eta)?;
+                at.gap += *approach * versine(&column.rail);
+                at.slopes[0] += *approach * column.rail.sin * column.rail.curvature;
+                Some(at)
             }
         }
+    }
+
+    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap; NaN where a body has no surface.
+    pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        self.at(xi, eta).map_or([f64::NAN; 2], |at| at.slopes)
     }
 
     /// Returns ∂/∂η of the gap.
     pub(super) fn slope(&mut self, xi: f64, eta: f64) -> f64 {
-        match self {
-            Self::Plane(evaluator) => evaluator.separation_and_gradient(xi, eta).1[1],
-            Self::Rail { gap, column, .. } => {
-                known(gap, column, xi).map_or(f64::NAN, |column| gap.slope_in(column, eta))
-            }
-        }
+        self.gradient(xi, eta)[1]
     }
+}
+
+/// Returns 1 − cos α, without a difference of nearly equal numbers.
+fn versine(&RailPoint { cos, sin, .. }: &RailPoint) -> f64 {
+    sin * sin / (1.0 + cos)
 }
 
 /// Takes the last column if it is that of σ \[mm\].

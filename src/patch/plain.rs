@@ -118,7 +118,7 @@ fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
     let placement = outline.slicer.placement();
     let (skewed, on_roller) = (placement.skew() != 0.0, placement.under().is_some());
     if over_rail || (on_roller && (skewed || outline.floor(None, a) != 0.0)) {
-        points.extend(sampled_turns(outline, &points, over));
+        return sampled_turns(outline, points, over);
     } else {
         let floor = outline.floor(None, a);
         if floor == 0.0 {
@@ -131,21 +131,36 @@ fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
     points
 }
 
-/// Returns equal steps of ξ and the turns of the depth between these and known places.
-fn sampled_turns(outline: &mut Outline<'_>, known: &[f64], over: Interval) -> Vec<f64> {
-    let step = over.width() / WINDOW_INTERVALS as f64;
-    let mut places: Vec<f64> = (1..WINDOW_INTERVALS).map(|k| over.low + step * k as f64).collect();
-    let samples = places.clone();
-    places.extend(known);
+/// Returns both ends of a range of ξ \[mm\], and between them known places, equal steps and the turns of the depth between these, ascending;
+/// but no places whose neighbours on both sides lie outside the patch as well.
+fn sampled_turns(outline: &mut Outline<'_>, mut places: Vec<f64>, over: Interval) -> Vec<f64> {
+    places.extend((1..WINDOW_INTERVALS).map(|k| over.step(k, WINDOW_INTERVALS)));
     places.sort_by(f64::total_cmp);
+    places.dedup();
+    // The midplane has a surface wherever a slice has one.
+    let missing = outline.window.eta.contains(0.0);
+    let by_roots = outline.slicer.by_roots.as_mut();
+    let apart: Vec<bool> = match by_roots {
+        Some(slices) => places.iter().map(|&xi| slices.is_apart(xi).unwrap_or(missing)).collect(),
+        None => vec![false; places.len()],
+    };
     // At the lowest place along η, the slope of the gap has no part along η.
     let mut slope = |xi: f64| {
         let floor = outline.floor(None, xi);
         outline.slicer.gradient(xi, floor)[0]
     };
-    let between = places.windows(2);
-    let turns = between.filter_map(|pair| bracketed(&mut slope, pair[0].next_up(), pair[1]));
-    turns.collect::<Vec<_>>().into_iter().chain(samples).collect()
+    let mut turns = vec![over.low];
+    for (pair, apart) in places.windows(2).zip(apart.windows(2)) {
+        if apart == [true; 2] {
+            continue;
+        }
+        turns.push(pair[0]);
+        turns.extend(bracketed(&mut slope, pair[0].next_up(), pair[1]));
+        turns.push(pair[1]);
+    }
+    turns.push(over.high);
+    turns.dedup();
+    turns
 }
 
 /// Returns the end of the patch between p and q, one of which is inside the patch, and what bounds it there.

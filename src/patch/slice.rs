@@ -174,16 +174,30 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] next to a guess, under a skewed wheel on a rail. Returns `None` without skew, and if
-    /// they are not surely those of the slice that was guessed.
-    pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
-        self.skewed.as_mut()?.edges_near(xi, guess)
+    /// Returns both ends of the slice at ξ \[mm\] next to a guess; with skew, of the slice that holds `valley`. Returns `None` without skew over
+    /// the tangent plane of a rail, and if they are not surely those of the slice that was guessed.
+    pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
+        match &mut self.by_roots {
+            Some(by_roots) => by_roots.edges_near(xi, guess),
+            None => self.skewed.as_mut()?.edges_near((xi, valley?), guess),
+        }
     }
 
-    /// Returns whether s over the tangent plane of a rail rises from one lowest place of every ξ to both sides.
-    pub(super) fn has_one_valley(&self, xi: &Lanes) -> bool {
-        let one = |skewed: &Skewed<'_>| skewed.valleys.is_one_between(Interval::between(xi[0], xi[MANY - 1]));
-        self.varying.is_none() && self.by_roots.is_none() && self.skewed.as_ref().is_none_or(one)
+    /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, with skew that of `valley`, up to both
+    /// edges \[mm\].
+    pub(super) fn has_one_valley(
+        &self,
+        xi: &Lanes,
+        [low, high]: &[Lanes; 2],
+        valley: impl Fn(f64) -> Option<usize>,
+    ) -> bool {
+        self.skewed.as_ref().is_none_or(|Skewed { valleys, .. }| {
+            let alone = |k: usize| {
+                let eta = Interval::new(low[k], high[k]);
+                valley(xi[k]).is_some_and(|valley| valleys.is_alone_within(valley, xi[k], eta))
+            };
+            valleys.is_one_between(Interval::between(xi[0], xi[MANY - 1])) || (0..MANY).all(alone)
+        })
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.

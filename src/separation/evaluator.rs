@@ -19,6 +19,18 @@ pub struct Normals {
     pub wheel: Option<Unit<Vector3<f64>>>,
 }
 
+/// The gap at one place, with what leads from there to the place where it has a given value.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GapSlopes {
+    /// The gap \[mm\].
+    pub(crate) gap: f64,
+    /// Its slopes along ξ, or σ, and η.
+    pub(crate) slopes: [f64; 2],
+    /// Abscissae in the contact frame \[mm\] of the points of both profiles that lie there, the wheel's first. NaN for a body that varies,
+    /// and for an extruded rail.
+    pub(crate) abscissae: [f64; 2],
+}
+
 /// Evaluates single points over a placed pair.
 ///
 /// # Examples
@@ -83,16 +95,16 @@ impl<'a> Upper<'a> {
         }
     }
 
-    /// Height, and the wheel's outward unit normal.
-    fn height_and_normal(&mut self, xi: f64, eta: f64) -> Option<(f64, Unit<Vector3<f64>>)> {
+    /// Height \[mm\], abscissa of the profile's point \[mm\], NaN of a wheel that varies, and the wheel's outward unit normal.
+    fn height_and_normal(&mut self, xi: f64, eta: f64) -> Option<(f64, f64, Unit<Vector3<f64>>)> {
         match self {
             Self::Round(relief) => {
                 let point = relief.point(xi, eta)?;
-                Some((relief.height_at(xi, &point), relief.normal(&point)))
+                Some((relief.height_at(xi, &point), relief.abscissa(&point), relief.normal(&point)))
             }
             Self::Varying(feet, rail) => {
                 let foot = feet.at(xi, eta)?;
-                Some((foot.zeta - rail.height(xi), -foot.normal()))
+                Some((foot.zeta - rail.height(xi), f64::NAN, -foot.normal()))
             }
         }
     }
@@ -140,22 +152,37 @@ impl<'a> Evaluator<'a> {
 
     /// Computes s \[mm\] and its gradient [∂s/∂ξ, ∂s/∂η] at (ξ, η); one call costs less than two. NaN off either body.
     pub fn separation_and_gradient(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {
-        let nowhere = (f64::NAN, [f64::NAN; 2]);
-        let Some((s, normal)) = self.upper.height_and_normal(xi, eta) else { return nowhere };
-        let [along, across] = slopes(normal);
+        self.gap_and_slopes(xi, eta).map_or((f64::NAN, [f64::NAN; 2]), |at| (at.gap, at.slopes))
+    }
+
+    /// Computes s, its gradient and the abscissae of the points over (ξ, η); `None` off either body.
+    pub(crate) fn gap_and_slopes(&mut self, xi: f64, eta: f64) -> Option<GapSlopes> {
+        let (s, abscissa, normal) = self.upper.height_and_normal(xi, eta)?;
+        let ([along, across], alone) = (slopes(normal), [abscissa, f64::NAN]);
         if let Some(feet) = &mut self.feet {
-            let Some(foot) = feet.at(xi, eta) else { return nowhere };
-            return (s - foot.zeta, [along - foot.slopes[0], across - foot.slopes[1]]);
+            let foot = feet.at(xi, eta)?;
+            let slopes = [along - foot.slopes[0], across - foot.slopes[1]];
+            return Some(GapSlopes { gap: s - foot.zeta, slopes, abscissae: alone });
         }
-        let Some(lower) = &mut self.lower else { return (s, [along - self.rail_slope(xi), across]) };
-        let Some(foot) = lower.point(xi, eta) else { return nowhere };
+        let Some(lower) = &mut self.lower else {
+            return Some(GapSlopes {
+                gap: s,
+                slopes: [along - self.rail_slope(xi), across],
+                abscissae: alone,
+            });
+        };
+        let foot = lower.point(xi, eta)?;
         let below = slopes(lower.normal(&foot));
-        (s + lower.height_at(xi, &foot), [along + below[0], across + below[1]])
+        Some(GapSlopes {
+            gap: s + lower.height_at(xi, &foot),
+            slopes: [along + below[0], across + below[1]],
+            abscissae: [abscissa, lower.abscissa(&foot)],
+        })
     }
 
     /// Computes [∂ζ^W/∂ξ, ∂ζ^W/∂η] at (ξ, η); NaN off the wheel.
     pub fn wheel_slopes(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        self.upper.height_and_normal(xi, eta).map_or([f64::NAN; 2], |(_, normal)| slopes(normal))
+        self.upper.height_and_normal(xi, eta).map_or([f64::NAN; 2], |(.., normal)| slopes(normal))
     }
 
     /// Returns whether the lower body is a roller.
@@ -185,7 +212,7 @@ impl<'a> Evaluator<'a> {
                 Unit::new_unchecked(Vector3::new(-tangent.sin, 0.0, tangent.cos))
             }),
         };
-        Normals { rail, wheel: self.upper.height_and_normal(xi, eta).map(|(_, normal)| normal) }
+        Normals { rail, wheel: self.upper.height_and_normal(xi, eta).map(|(.., normal)| normal) }
     }
 
     /// Computes s, and the sum of the magnitudes of its terms \[mm\]. Both are NaN off either body.

@@ -38,6 +38,7 @@ pub(crate) use columns::horner::{ColumnPolynomial, MOST_COEFFICIENTS, SpanRun};
 pub(crate) use columns::skewed::{SMALL_SHARE, interpolate};
 pub(crate) use demand::ROUNDING_LEVEL;
 pub use demand::{Demand, FULL_PRECISION};
+pub(crate) use evaluator::GapSlopes;
 pub use evaluator::{Evaluator, Normals};
 pub(crate) use gap::{contact_gap, contact_gaps, midplane_gap};
 pub use grid::{Choice, Method};

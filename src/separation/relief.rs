@@ -71,6 +71,9 @@ impl<'a> Relief<'a> {
     pub fn point(&mut self, xi: f64, eta: f64) -> Option<ReliefPoint> {
         let [shift, eta_w] = self.wheel_coordinates(xi, eta);
         let (xi_w, u) = (xi + shift, eta_w * eta_w);
+        if u.is_nan() {
+            return None;
+        }
         self.wheel.spans(xi_w, u, &mut self.spans);
         let span = self.spans[WheelSurface::span_at(&self.spans, u)?];
         Some(ReliefPoint { xi_w, shift, eta_w, span, point: self.wheel.point_at(xi_w, &span, u)? })
@@ -99,6 +102,11 @@ impl<'a> Relief<'a> {
     /// Computes the relief at η = 0 \[mm\] without skew; NaN where a body has no surface.
     pub fn midplane(&self, xi: f64) -> f64 {
         gap::midplane_gap_of(self.below, self.wheel.section, xi)
+    }
+
+    /// Returns the abscissa \[mm\] of the profile's point from which a point of the surface is turned.
+    pub fn abscissa(&self, point: &ReliefPoint) -> f64 {
+        self.wheel.abscissa(point.xi_w, point.point.e)
     }
 
     /// Computes the unit normal in (ξ, η, ζ) that points down.

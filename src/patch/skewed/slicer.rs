@@ -19,11 +19,11 @@ pub(in crate::patch) const STEP_ROUNDINGS: f64 = 64.0;
 const NEWTON_STEPS: usize = 6;
 
 /// Newton step, as a share of η's distance from the start, after which iteration ends: the error is its square.
-const QUADRATIC: f64 = 1e-8;
+pub(in crate::patch) const QUADRATIC: f64 = 1e-8;
 
 /// Distance from a guessed edge, as a share of the slice, up to which a root is the edge that was guessed: another interval is farther
 /// away.
-const NEAR_GUESS: f64 = 0.1;
+pub(in crate::patch) const NEAR_GUESS: f64 = 0.1;
 
 /// Half the interval, in roundings of η, in which Newton's result is confirmed by a change of sign.
 const NEWTON_ROUNDINGS: f64 = 64.0;
@@ -44,6 +44,30 @@ pub(crate) struct Edge {
 /// Returns the interval of η between the ends of a slice \[mm\].
 pub(in crate::patch) fn between([low, high]: [Edge; 2]) -> Interval {
     Interval::new(low.eta, high.eta)
+}
+
+/// Returns η \[mm\] of one end of a slice by Newton's steps from a guess. `miss` gives the gap less δ \[mm\] and its slope along η. Returns
+/// `None` unless the steps settle no farther than `near` \[mm\] from the guess, and the gap rises in the direction `outward` there.
+pub(in crate::patch) fn newton_from(
+    mut miss: impl FnMut(f64) -> Option<[f64; 2]>,
+    guess: f64,
+    outward: f64,
+    near: f64,
+) -> Option<f64> {
+    let mut eta = guess;
+    for _ in 0..NEWTON_STEPS {
+        let [over, slope] = miss(eta)?;
+        let step = over / slope;
+        eta -= step;
+        // NaN ends the steps, too.
+        if !(slope * outward > 0.0 && (eta - guess).abs() <= near) {
+            return None;
+        }
+        if step.abs() <= QUADRATIC * near {
+            return Some(eta);
+        }
+    }
+    None
 }
 
 /// Finds the slices under a skewed wheel at one approach.
@@ -129,30 +153,24 @@ impl<'a> Skewed<'a> {
     }
 
     /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, s rises
-    /// outwards there, and no second valley or ridge is at ξ: s rises on either side of a single valley, and there is no other slice.
-    pub(in crate::patch) fn edges_near(&mut self, xi: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
-        if self.valleys.over(xi).nth(1).is_some() {
+    /// outwards there, and no second valley or ridge is at ξ in the guess or next to it: up to there s rises on either side of the
+    /// valley.
+    pub(in crate::patch) fn edges_near(
+        &mut self,
+        (xi, valley): (f64, usize),
+        [low, high]: [f64; 2],
+    ) -> Option<[f64; 2]> {
+        let near = NEAR_GUESS * (high - low);
+        let alone = self.valleys.over(xi).nth(1).is_none()
+            || self.valleys.is_alone_within(valley, xi, Interval::new(low, high).grown(near));
+        if !alone {
             return None;
         }
-        let near = NEAR_GUESS * (high - low);
-        Some([self.edge_near(xi, low, -1.0, near)?, self.edge_near(xi, high, 1.0, near)?])
-    }
-
-    fn edge_near(&mut self, xi: f64, guess: f64, outward: f64, near: f64) -> Option<f64> {
-        let mut eta = guess;
-        for _ in 0..NEWTON_STEPS {
+        let mut miss = |eta: f64| {
             let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
-            let step = (s - self.approach) / slope;
-            eta -= step;
-            // NaN ends the steps, too.
-            if !(slope * outward > 0.0 && (eta - guess).abs() <= near) {
-                return None;
-            }
-            if step.abs() <= QUADRATIC * near {
-                return Some(eta);
-            }
-        }
-        None
+            Some([s - self.approach, slope])
+        };
+        Some([newton_from(&mut miss, low, -1.0, near)?, newton_from(&mut miss, high, 1.0, near)?])
     }
 
     /// Returns the end of the slice on one side of its lowest point.

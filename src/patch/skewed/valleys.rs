@@ -197,6 +197,12 @@ impl<'a> Valleys<'a> {
         only && met.next().is_none()
     }
 
+    /// Returns whether a valley lies at ξ in an interval of η \[mm\], and no other valley or ridge, nor an end or step of the surface.
+    pub(crate) fn is_alone_within(&self, valley: usize, xi: f64, eta: Interval) -> bool {
+        let alone = self.over(xi).all(|k| (k == valley) == eta.contains(self.spot(k, xi).eta));
+        alone && !self.rims(xi).any(|rim| eta.contains(rim))
+    }
+
     /// Returns the η at which the line of constant ξ meets ends and steps of the wheel's surface \[mm\].
     pub(crate) fn rims(&self, xi: f64) -> impl Iterator<Item = f64> {
         self.crossings(xi).map(|(place, _)| place.eta)
