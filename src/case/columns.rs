@@ -242,7 +242,7 @@ fn semi_axes(contact: &Contact, left: bool, (by, modulus): (ApproachBy, f64)) ->
     let ellipse = match by {
         ApproachBy::Given(approach) => curvatures.under_approach(approach, modulus),
         ApproachBy::WheelLoad(_) | ApproachBy::WheelLoads { .. } | ApproachBy::AxleLoad(_) => {
-            curvatures.under_load(by.of_wheel(left)? / contact.contact_angle.cos(), modulus)
+            curvatures.under_load(by.of_wheel(left)? / contact.upright(), modulus)
         }
     };
     Some(curvatures.along(&ellipse?))

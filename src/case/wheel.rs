@@ -167,7 +167,7 @@ impl<'a> SinkingWheel<'a> {
             rail: Point2::new(place.rail_x, place.rail_z),
             placing: Placing::Found(*place),
             gap: place.gap,
-            cos: place.contact_angle.cos() * place.turn.cos(),
+            cos: place.upright(),
             y: place.y + on.map_or(0.0, |on| on.from),
             known: Vec::new(),
         };

@@ -27,7 +27,7 @@ impl Elastic {
     }
 }
 
-/// 1/E* = (1 − ν_R²)/E_R + (1 − ν_W²)/E_W \[N/mm²\].
+/// Gives the effective modulus E* \[N/mm²\]: 1/E* = (1 − ν_R²)/E_R + (1 − ν_W²)/E_W.
 pub fn effective_modulus(rail: &Elastic, wheel: &Elastic) -> f64 {
     let compliance = |body: &Elastic| (1.0 - body.poissons_ratio * body.poissons_ratio) / body.youngs_modulus;
     (compliance(rail) + compliance(wheel)).recip()
@@ -38,13 +38,13 @@ pub fn effective_modulus(rail: &Elastic, wheel: &Elastic) -> f64 {
 pub struct Curvatures {
     /// A \[1/mm\], along the ellipse's long axis: half the relative curvature.
     pub a_per_mm: f64,
-    /// B \[1/mm\], along its short axis.
+    /// B \[1/mm\], along the ellipse's short axis: half the relative curvature.
     pub b_per_mm: f64,
     /// Angle of the long axis from ξ towards η \[rad\], in (−π/2, π/2\].
     pub long_axis_rad: f64,
 }
 
-/// The ellipse and what belongs to it.
+/// Hertz's contact ellipse, with its approach, load and largest pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Ellipse {
     /// Long semi-axis a \[mm\].
@@ -59,7 +59,7 @@ pub struct Ellipse {
     pub pressure_n_per_mm2: f64,
 }
 
-/// The principal curvatures of s at C.
+/// Computes the principal curvatures of s at C; not numbers where a body touches with a kink.
 ///
 /// # Examples
 /// ```
@@ -83,19 +83,22 @@ pub fn curvatures(placement: &Placement) -> Curvatures {
     principal(quadratic_form(placement))
 }
 
-/// The principal curvatures of s at a place that a search found; not numbers at a kink.
+/// Computes the principal curvatures of s at a place that a search found on a rail or roller; not numbers at a kink. Curvatures along a
+/// body that varies are not included: place the contact on it, and take [`curvatures`].
 pub fn curvatures_at(contact: &Contact) -> Curvatures {
     principal(quadratic_form_at(contact))
 }
 
-/// The coefficients \[1/mm\] of ξ², ξη and η² in the second-order expansion of s at a place that a search found on a rail; not numbers at
-/// a kink.
+/// Computes the coefficients \[1/mm\] of ξ², ξη and η² in the second-order expansion of s at a place that a search found on a rail or
+/// roller of one profile; not numbers at a kink.
 pub fn quadratic_form_at(contact: &Contact) -> [f64; 3] {
     let around = contact.wheel_angle.cos() / contact.rolling_radius;
-    form([contact.rail_curvature, contact.wheel_curvature], around, contact.skew)
+    let [along, mixed, across] =
+        form([contact.rail_curvature, contact.wheel_curvature], around, contact.skew);
+    [along, mixed, across + contact.roller_curvature / 2.0]
 }
 
-/// Of s = xx ξ² + xy ξη + yy η².
+/// Turns s = xx ξ² + xy ξη + yy η² into its principal directions.
 fn principal([xx, xy, yy]: [f64; 3]) -> Curvatures {
     let (mean, half) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
     let spread = half.hypot(xy / 2.0);
@@ -116,13 +119,13 @@ fn principal([xx, xy, yy]: [f64; 3]) -> Curvatures {
 }
 
 impl Curvatures {
-    /// The semi-axes \[mm\] of an ellipse of these curvatures nearest to ξ and to η.
+    /// Gives the semi-axes \[mm\] of an ellipse of these curvatures nearest to ξ and to η.
     pub fn along(&self, ellipse: &Ellipse) -> [f64; 2] {
         let Ellipse { a_mm, b_mm, .. } = *ellipse;
         if self.long_axis_rad.abs() < std::f64::consts::FRAC_PI_4 { [a_mm, b_mm] } else { [b_mm, a_mm] }
     }
 
-    /// k = b/a of the contact ellipse: A/B = k² D/(K − D), monotone in k. `None` where s is not convex at C
+    /// Finds k = b/a of the contact ellipse: A/B = k² D/(K − D), monotone in k. `None` where s is not convex at C
     /// (A ≤ 0), where Hertz has no ellipse.
     fn axis_ratio(&self) -> Option<f64> {
         let ratio = self.a_per_mm / self.b_per_mm;
@@ -141,7 +144,7 @@ impl Curvatures {
         bracketed(miss, ratio.ln(), 0.0).map(f64::exp)
     }
 
-    /// The ellipse under an approach δ \[mm\]; E* in N/mm².
+    /// Computes the ellipse under an approach δ \[mm\] for E* \[N/mm²\]; `None` where s is not convex at C, and without an approach.
     pub fn under_approach(&self, approach: f64, modulus: f64) -> Option<Ellipse> {
         let k = self.axis_ratio()?;
         let [big_k, d] = complete(k);
@@ -154,7 +157,7 @@ impl Curvatures {
             .filter(|_| approach > 0.0)
     }
 
-    /// The ellipse under a load \[N\]; E* in N/mm².
+    /// Computes the ellipse under a normal load \[N\] for E* \[N/mm²\]; `None` where s is not convex at C, and without a load.
     pub fn under_load(&self, load: f64, modulus: f64) -> Option<Ellipse> {
         let k = self.axis_ratio()?;
         let [big_k, d] = complete(k);

@@ -66,8 +66,8 @@ pub struct Contact {
     pub rail_z: f64,
     /// Height of the wheel profile's point over the wheel profile's origin \[mm\].
     pub wheel_z: f64,
-    /// Position along the rail, + forward \[mm\], from the vertical plane across the track through the
-    /// wheel's centre: sinψ (x_W − ϱ tanθ_W) on a rail. Behind the centre at a flange when yaw > 0.
+    /// Position along the rail, + forward \[mm\], from the vertical plane across the track through the wheel
+    /// profile's origin: sinψ (x_W − ϱ tanθ_W) on an extruded rail. Behind it at a flange when yaw > 0.
     pub y: f64,
     /// Angle ν \[rad\] by which the common normal leans forward out of the rail's section; 0 on a rail of one profile. On a roller it is
     /// the angle about its axle from the crown to the contact, which lies at (R + z) sin ν ahead of the crown, with R the roller's
@@ -85,7 +85,8 @@ pub struct Contact {
     pub wheel_angle: f64,
     /// Skew χ \[rad\]: angle about the common normal ζ, + from ξ to η, from the rail's contact frame (ξ along
     /// its profile's tangent, η = y) to the wheel's (ξ' along its meridian tangent, η' along its
-    /// circumference, forward): ξ' = ξ cosχ + η sinχ, η' = η cosχ − ξ sinχ, ζ' = ζ. sinχ = sinψ/cosθ_W.
+    /// circumference, forward): ξ' = ξ cosχ + η sinχ, η' = η cosχ − ξ sinχ, ζ' = ζ. sinχ = sinψ/cosθ_W on an
+    /// extruded rail.
     pub skew: f64,
     /// Vertical gap left at first touch \[mm\]; 0 for the lowest contact.
     pub gap: f64,
@@ -95,6 +96,8 @@ pub struct Contact {
     pub rail_curvature: f64,
     /// Curvature of the wheel profile \[1/mm\], + hollow side up, −1/13 in a flange root; +∞ at a kink.
     pub wheel_curvature: f64,
+    /// Curvature of a roller around its axle \[1/mm\]: cosθ_R over the distance of the contact from the axle; 0 on a rail.
+    pub roller_curvature: f64,
     /// Whether the rail touches with a kink, step or end: the contact angle is then that of the common
     /// normal, not of a tangent.
     pub rail_kink: bool,
@@ -173,7 +176,7 @@ impl Pose {
         Ok(Self { offset, yaw: small_angle("yaw", yaw)?, roll: small_angle("roll", roll)? })
     }
 
-    /// The attitude of a wheel of this nominal rolling radius \[mm\].
+    /// Gives the attitude of a wheel of this nominal rolling radius \[mm\].
     pub(super) fn attitude(&self, radius: f64) -> Attitude {
         Attitude::new(self.offset, self.yaw, self.roll, radius)
     }
@@ -183,19 +186,19 @@ impl Pose {
         self.roll
     }
 
-    /// The rotation of the wheel about its profile origin: see [`wheel_rotation`].
+    /// Gives the rotation of the wheel about its profile origin: see [`wheel_rotation`].
     pub fn rotation(&self) -> Rotation3<f64> {
         wheel_rotation(self.yaw, self.roll)
     }
 }
 
-/// The rotation A = R_y(roll) · R_z(yaw) of a wheel or wheelset, angles in rad: the yaw is applied first, the roll
+/// Gives the rotation A = R_y(roll) · R_z(yaw) of a wheel or wheelset, angles in rad: the yaw is applied first, the roll
 /// second, about the unyawed y axis. It takes vectors (x, y, z) of the wheel, x along its axle, to the rail's axes.
 pub fn wheel_rotation(yaw: f64, roll: f64) -> Rotation3<f64> {
     Rotation3::from_axis_angle(&Vector3::y_axis(), roll) * Rotation3::from_axis_angle(&Vector3::z_axis(), yaw)
 }
 
-/// Returns the angle, or an error if it is one that no wheel has.
+/// Returns the angle \[rad\], or an error if it is larger than any wheel's.
 pub(crate) fn small_angle(place: &str, angle: f64) -> Result<f64> {
     if finite(place, angle)?.abs() <= LARGEST_ANGLE {
         return Ok(angle);
@@ -245,7 +248,7 @@ impl ContactSearch<'_> {
     /// Accuracy: heights and gaps to a few roundings of the profiles' extents, whatever R; abscissae to that
     /// over √(difference of curvatures), from the common tangent, not from a flat minimum.
     /// Cost: about half a microsecond for arcs, a few for polynomials of any number; yaw doubles it. The
-    /// first search has no place to start from and costs some times more.
+    /// first search has no place to start from and costs several times as much.
     /// Degenerate: bodies that touch along a stretch (parallel lines, equal arcs) give its middle.
     ///
     /// # Errors
@@ -268,7 +271,7 @@ impl ContactSearch<'_> {
         for candidate in &self.over_rail.candidates {
             let contact = match self.roller_under(attitude) {
                 Some(roller) => contact_on_roller(attitude, roller, candidate, height),
-                None => contact(attitude, candidate, height),
+                None => contact(attitude, self.roller, candidate, height),
             };
             let near = |c: &&mut Contact| {
                 (c.rail_x - contact.rail_x).abs() <= apart && (c.wheel_x - contact.wheel_x).abs() <= apart
@@ -319,7 +322,13 @@ impl Contact {
         self.rail_kink || self.wheel_kink
     }
 
-    /// Slope of the wheel's path along the track where it rolls over this contact: that of the common tangent plane, + up ahead.
+    /// Gives the cosine of the angle between the common normal and the vertical.
+    pub fn upright(&self) -> f64 {
+        self.contact_angle.cos() * self.turn.cos()
+    }
+
+    /// Gives the slope of the wheel's path along the track where it rolls over this contact: that of the common tangent plane, + where it
+    /// rises ahead.
     pub fn slope_along(&self) -> f64 {
         // 0 without a sign.
         0.0 - self.turn.tan() / self.contact_angle.cos()
@@ -357,8 +366,8 @@ impl Contact {
         Ok(placed.turned(self.turn))
     }
 
-    /// Places a wheel in contact here with its rail, one of which varies: that body. `pair` is any pair of the other one; `from` is the
-    /// coordinate \[mm\] in the list of a rail's slices that [`Self::y`] counts from.
+    /// Places wheel and rail, one of which is `body`, which varies, in contact here. `pair` has the other one, and any profile in place of
+    /// `body`; `from` is the coordinate \[mm\] in the list of a rail's slices from which [`Self::y`] counts.
     ///
     /// The contact frame's ξ lies in the section across the track, and its ζ leans ahead by [`Self::turn`]. The profile of the body that
     /// varies is the section through C.
@@ -399,7 +408,8 @@ impl Contact {
     }
 }
 
-fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
+/// Makes the contact with a rail, or with the crown of a roller of this radius \[mm\].
+fn contact(attitude: &Attitude, roller: Option<f64>, c: &Candidate, height: f64) -> Contact {
     let rolling_radius = attitude.radius - c.wheel.z;
     let sin = c.wheel.sin / attitude.cos_yaw;
     let unrolled_cos = ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt();
@@ -420,6 +430,7 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
         rolling_radius,
         rail_curvature: c.rail_radius.recip(),
         wheel_curvature: c.wheel_radius.recip(),
+        roller_curvature: roller.map_or(0.0, |radius| c.rail.cos / (radius + c.rail.z)),
         rail_kink: c.rail_radius == 0.0,
         wheel_kink: c.wheel_radius == 0.0,
     }
@@ -428,6 +439,6 @@ fn contact(attitude: &Attitude, c: &Candidate, height: f64) -> Contact {
 /// Makes the contact with a roller of this radius \[mm\], whose own meridian plane holds the common normal.
 fn contact_on_roller(attitude: &Attitude, roller: f64, c: &Candidate, height: f64) -> Contact {
     let turn = c.meeting.turn;
-    let seen = contact(&Meridian::new(attitude, roller, turn).attitude, c, height);
+    let seen = contact(&Meridian::new(attitude, roller, turn).attitude, Some(roller), c, height);
     Contact { y: (roller + c.rail.z) * turn.sin() - attitude.along, turn, ..seen }
 }

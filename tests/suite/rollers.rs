@@ -4,9 +4,12 @@ use std::path::Path;
 
 use serde_json::Value;
 use wheelrail::case::Place;
-use wheelrail::load::{Elastic, HalfSpace, effective_modulus, press_alone, weighted_frame};
+use wheelrail::load::{
+    Elastic, HalfSpace, curvatures, curvatures_at, effective_modulus, press_alone, weighted_frame,
+};
+use wheelrail::patch::Slicer;
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::{ONE_CONTACT, Position, Roll, Selection};
+use wheelrail::search::{Contact, ONE_CONTACT, Position, Roll, Selection};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
 use wheelrail::{Arc, Evaluator, Half, Pair, Patch, Placement, Profile, Segment, Window};
 use wheelrail_report::reference::ReferenceScene;
@@ -196,4 +199,58 @@ fn forces_on_a_roller_rig_agree_with_contact() {
     println!("forces {forces:?}, references {references:?}");
     assert!(forces[0] < 0.01 && forces[1] < 0.02, "{forces:?}");
     assert!(references[0] < 0.01 && references[1] < 0.05, "{references:?}");
+}
+
+/// Gives the contacts of both sides on a rig at some positions.
+fn found_on_rig(radius: f64) -> Vec<(Contact, Pair)> {
+    let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
+    let Place::Wheelset { system, .. } = &case.standing().place else { panic!("a wheelset") };
+    let (mut search, pair) = (system.search(), &case.profiles().right.pair);
+    let mut found = Vec::new();
+    for (lateral, yaw) in [(0.0, 0.0), (2.5, 0.01), (-4.0, 0.024), (5.5, -0.004), (6.4, 0.0)] {
+        let position = Position { lateral, yaw, roll: Roll::Fixed(0.0) };
+        let touch = search.touch(&position, &Selection { within: 0.0, apart: ONE_CONTACT }).unwrap();
+        found.extend(touch.sides.iter().map(|side| (side.touch.contacts[0], pair.clone())));
+    }
+    found
+}
+
+/// The curvature of the roller counts in the ellipses of sweeps, too.
+#[test]
+fn curvatures_at_found_places_are_those_of_placed_ones() {
+    for radius in [350.0, 800.0] {
+        for (contact, pair) in found_on_rig(radius) {
+            let (found, placed) = (curvatures_at(&contact), curvatures(&contact.placed(&pair).unwrap()));
+            for (found, expected) in [(found.a_per_mm, placed.a_per_mm), (found.b_per_mm, placed.b_per_mm)] {
+                assert!((found / expected - 1.0).abs() < 1e-9, "{contact:?}: {found} instead of {expected}");
+            }
+        }
+    }
+}
+
+/// The boundaries of patches are interpolants between the joints of both bodies, hundreds on measured profiles.
+#[test]
+fn boundaries_on_measured_rollers_are_exact_between_and_beside_joints() {
+    let (mut places, mut corners) = (0, 0);
+    for (contact, pair) in found_on_rig(350.0) {
+        let placement = contact.placed(&pair).unwrap();
+        let (patch, mut slicer) =
+            (Patch::new(&placement, 0.08, &Window::UNBOUNDED), Slicer::new(&placement, 0.08));
+        for component in &patch.components {
+            corners += component.corners.len();
+            let beside = component.corners.iter().flat_map(|xi| [xi - 1e-9, xi + 1e-9]);
+            let between = (1..400).map(|k| component.xi.step(k, 400));
+            for xi in beside.chain(between).filter(|xi| component.xi.surrounds(*xi)) {
+                let exact = slicer.slice(xi).unwrap().eta;
+                let [(_, found)] = patch.slices(xi)[..] else { panic!("one interval of η") };
+                // A rounding of s moves a narrow slice's ends far.
+                let allowed = 2e-11 / exact.width().max(1e-3);
+                for (found, exact) in found.eta.ends().into_iter().zip(exact.ends()) {
+                    assert!((found - exact).abs() < allowed, "{contact:?}, {xi}: {found} instead of {exact}");
+                }
+                places += 1;
+            }
+        }
+    }
+    assert!(places > 4000 && corners > 150, "{places} {corners}");
 }

@@ -27,7 +27,7 @@ struct TouchPlace {
     kinks: [bool; 2],
     /// How far ahead of the wheel's centre it lies \[mm\].
     y: f64,
-    /// Of a wheel that varies, the angle around it as its slices count, and that of the normal out of the meridian plane \[rad\].
+    /// The angle around a wheel that varies, as its slices count, and that of the normal out of the meridian plane \[rad\]; else 0.
     on_wheel: [f64; 2],
 }
 
@@ -55,7 +55,7 @@ impl TouchPlace {
             };
         }
         let (sin, cos) = ((below.own.y - along) / radius).sin_cos();
-        // The meridian's tangent is across the common normal, whatever the wheel does around the axle.
+        // The meridian's tangent is perpendicular to the common normal, however the wheel varies around the axle.
         let [nx, ny, nz] = into_wheel(over.attitude, normal);
         let inward = nz * cos - ny * sin;
         let length = nx.hypot(inward);
@@ -74,8 +74,8 @@ impl TouchPlace {
     }
 }
 
-/// Common unit normal at a place, out of the varying body, in the swept body's axes: that of the body which is smooth there. A rail that is
-/// extruded has none along the track.
+/// Gives the common unit normal at a place, out of the varying body, in the swept body's axes: that of the body which is smooth there.
+/// That of an extruded rail has no component along the track.
 fn normal(over: &SweptAbove<'_>, settled: &SettledPlace) -> [f64; 3] {
     let SettledPlace { below, above, at_end, kink, .. } = settled;
     let n = if at_end.contains(&true) || (over.varying == Side::Wheel && !kink) {
@@ -103,7 +103,7 @@ pub(super) fn candidate(over: &SweptAbove<'_>, found: &FoundPlace) -> Candidate 
     }
 }
 
-/// Curvature of the surface's section across \[1/mm\], + with the hollow side up.
+/// Computes the curvature of the surface's section across \[1/mm\], + with the hollow side up.
 fn section_curvature(own: &SurfacePoint) -> f64 {
     let ([x, z], [xx, zz]) = (own.across, own.across2);
     (x * zz - z * xx) / x.hypot(z).powi(3)
@@ -135,6 +135,7 @@ pub(super) fn contact(over: &SweptAbove<'_>, found: &FoundPlace, along: f64, hei
         rolling_radius: place.rolling_radius,
         rail_curvature: place.curvatures[0],
         wheel_curvature: place.curvatures[1],
+        roller_curvature: 0.0,
         rail_kink: place.kinks[0],
         wheel_kink: place.kinks[1],
     }
