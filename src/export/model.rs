@@ -8,9 +8,9 @@ use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::separation::{LowerBody, LowerSurface};
 
-/// Largest difference of the steps of an evenly spaced grid, as a multiple of the largest |coordinate|: two roundings of
-/// `from + i·step` at each end. A smaller factor would refuse grids that are even to rounding. A larger one would accept
-/// values away from the even spacing, which is all that a solver sees.
+/// Largest difference of one step from the mean step of an evenly spaced grid, as a multiple of the largest |coordinate|. A
+/// smaller factor would refuse grids that are even to rounding (two roundings of `from + i·step` at each end). A larger one would
+/// accept points that are not where a solver, which reads only the first point and the step, assumes them.
 const STEP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The contact frame ξηζ in the rail profile's axes (x lateral, y rolling direction, z up) \[mm\].
@@ -41,7 +41,7 @@ impl From<&Isometry2<f64>> for Frame {
 }
 
 impl Frame {
-    /// Returns the contact frame of a placed pair; on a rail that varies along the track y counts as its slices do.
+    /// Returns the contact frame of a placed pair; on a rail that varies along the track, y is that of its slices.
     pub fn of(placement: &Placement) -> Self {
         let Some(lofted) = placement.lofted_rail() else {
             return Self::from(&placement.rail().contact_frame());
@@ -69,7 +69,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Makes the header of what no scene describes: its hash is `none`, and there are no remarks.
+    /// Makes the header of a contact without a scene: its hash is `none`, and there are no remarks.
     pub fn new(title: String, frame: Frame, approach: f64) -> Self {
         let (version, scene_hash) = (env!("CARGO_PKG_VERSION").into(), "none".into());
         Self { title, version, scene_hash, approach, frame, remarks: Vec::new() }
@@ -96,7 +96,7 @@ impl Header {
     }
 }
 
-/// Returns lines of at most [`LINE`] characters, divided between words.
+/// Returns lines of at most [`LINE`] characters, divided between words; a longer word is a line of its own.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -111,11 +111,11 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// Most characters of a comment's line.
+/// Most characters of a line of a comment.
 const LINE: usize = 76;
 
 /// Returns one printable ASCII line of at most [`LINE`] characters, fit for the comments of every format:
-/// `--` would end a comment in XML.
+/// `--`, which XML forbids in a comment, becomes `==`.
 pub(super) fn plain(line: &str) -> String {
     let printable = |c: char| if c.is_ascii_graphic() || c == ' ' { c } else { '?' };
     let line: String = line.chars().map(printable).take(LINE).collect();
@@ -164,7 +164,7 @@ impl<'a> GridFields<'a> {
         Ok(Self { xi, eta, separation, rail_height, rail_normal, surface: None, pressure: None })
     }
 
-    /// Makes the fields of s over a lower body; all as [`GridFields::new`] has it.
+    /// Makes the fields of s over a lower body, whose heights and normals they take; other arrays as in [`GridFields::new`].
     ///
     /// # Errors
     /// An empty axis, or lengths that do not agree.
@@ -186,7 +186,7 @@ impl<'a> GridFields<'a> {
         Ok(Self { pressure: Some(pressure), ..self })
     }
 
-    /// Returns the pressures \[N/mm²\] where they were solved.
+    /// Returns the pressures \[N/mm²\] at `i_xi * n_eta + i_eta`; `None` where none were solved.
     pub fn pressure(&self) -> Option<&'a [f64]> {
         self.pressure
     }
@@ -251,11 +251,12 @@ impl<'a> GridFields<'a> {
         Ok([even_step(format, "xi", self.xi)?, even_step(format, "eta", self.eta)?])
     }
 
-    /// Returns the number that replaces an undefined s in formats that need a number: 10 × the largest |s|. Much larger
-    /// values spoil a solver's result without a warning.
+    /// Returns the number \[mm\] that replaces an undefined s in formats that need a number: 10 × the largest |s|, or 1 where no s
+    /// differs from 0. Much larger values spoil a solver's result without a warning.
     pub fn fill_value(&self) -> f64 {
         // `max` ignores NaN.
-        10.0 * self.separation.iter().fold(0.0, |largest: f64, s| largest.max(s.abs()))
+        let largest = self.separation.iter().fold(0.0, |largest: f64, s| largest.max(s.abs()));
+        if largest == 0.0 { 1.0 } else { 10.0 * largest }
     }
 }
 
@@ -264,7 +265,7 @@ pub(super) fn known(value: f64) -> f64 {
     if value.is_nan() { 0.0 } else { value }
 }
 
-/// Gives the step \[mm\] of one of a grid's axes, which `format` needs to be equal.
+/// Gives the step \[mm\] of an axis of a grid, which `format` needs to have equal steps.
 ///
 /// # Errors
 /// Fewer than two values; unequal steps.
@@ -300,8 +301,8 @@ pub fn even_step(format: &str, axis: &str, values: &[f64]) -> Result<f64> {
 pub struct Loop {
     /// Number of the component that the loop bounds, from 0.
     pub component: usize,
-    /// Its points (ξ, η, ζ^R) \[mm\] on the rail's surface, counter-clockwise in (ξ, η). The first is not repeated at the
-    /// end.
+    /// Its points (ξ, η, ζ^R) \[mm\] on the rail's surface, counter-clockwise in (ξ, η), clockwise around a hole. The first is not
+    /// repeated at the end.
     pub points: Vec<Point3<f64>>,
 }
 
@@ -314,7 +315,7 @@ pub struct PatchRow {
     pub component: usize,
     /// Smallest and largest η \[mm\] with s ≤ δ.
     pub eta: Interval,
-    /// Whether each of them is the end of the window, where s < δ.
+    /// Whether the lower and the upper end are ends of the window, where s < δ.
     pub cut: [bool; 2],
 }
 
@@ -346,7 +347,7 @@ impl QuadMesh {
 /// A triangulated surface of one body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SurfaceMesh {
-    /// What it is of, in ASCII letters: "patch", "rail", "wheel".
+    /// Name of what is meshed, in ASCII letters: "patch", "rail", "wheel".
     pub name: &'static str,
     /// Nodes (ξ, η, ζ) \[mm\].
     pub points: Vec<Point3<f64>>,
@@ -381,7 +382,7 @@ pub struct PatchMesh {
     pub rail_normals: Vec<Vector3<f64>>,
     /// Outward unit normals of the wheel over the nodes; zero where it has none.
     pub wheel_normals: Vec<Vector3<f64>>,
-    /// Exact area of each component \[mm²\], inside the curve and not the polygon.
+    /// Exact area of each component \[mm²\]: that inside the curve s = δ, not inside the edges of the mesh.
     pub areas: Vec<f64>,
 }
 
@@ -389,7 +390,7 @@ impl PatchMesh {
     /// Checks the properties that every writer relies on.
     ///
     /// # Errors
-    /// Lengths that do not agree; a node or component number beyond those there are.
+    /// Lengths that do not agree; the number of a node or component that does not exist.
     pub fn validate(&self) -> Result<()> {
         let nodes = self.mesh.points.len();
         same_length("separations of the patch", self.separation.len(), nodes)?;
@@ -485,5 +486,7 @@ mod tests {
         assert!(GridFields::new(&xi, &[], &[], &[0.0; 2], &[[0.0, 1.0]; 2]).is_err());
         let grid = GridFields::new(&xi, &eta, &[f64::NAN, -2.0], &[0.0; 2], &[[0.0, 1.0]; 2]).unwrap();
         assert_eq!(grid.fill_value(), 20.0);
+        let nowhere = GridFields::new(&xi, &eta, &[f64::NAN; 2], &[0.0; 2], &[[0.0, 1.0]; 2]).unwrap();
+        assert!(nowhere.fill_value() > 0.0);
     }
 }

@@ -58,7 +58,8 @@ fn around(angle: f64) -> f64 {
 impl<'a> SectionOfList<'a> {
     /// Finds the slices around the place that the options name.
     ///
-    /// The angle around a wheel is first turned into \[−π, π). Before the first and after the last slice of a wheel, that slice holds.
+    /// The angle around a wheel is first turned into \[−π, π). Where no slices lie on both sides of it, the nearer one of the first and
+    /// the last slice around the wheel holds.
     ///
     /// # Errors
     /// No place, one that is not finite, or that of the other body; a place outside a rail's slices.
@@ -89,7 +90,9 @@ impl<'a> SectionOfList<'a> {
         let mut at = finite(key, given)?;
         let asked = if list.side == Side::Wheel { around(at) } else { at };
         if list.side == Side::Wheel {
-            at = asked.clamp(ends[0], ends[1]);
+            let off = ends.map(|end| around(asked - end).abs());
+            let nearer = if off[0] < off[1] { ends[0] } else { ends[1] };
+            at = if Interval::new(ends[0], ends[1]).contains(asked) { asked } else { nearer };
         } else if at < ends[0] - SAME_PLACE || at > ends[1] + SAME_PLACE {
             return Err(Error::new(key, format!("{at} {unit}"), range, "choose one that the slices cover"));
         }

@@ -1,4 +1,4 @@
-//! Builds a table: divides the range into cells with polynomials, and states what they err by.
+//! Builds a table: divides the range into cells with polynomials, and states their errors.
 
 use super::about::About;
 use super::asked::Asked;
@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorKind, Result, finite};
 use crate::numerics::interval::Interval;
 use crate::search::WheelsetOnTrack;
 
-/// Tolerances \[mm\] that a table can have: below the first the rounding of a search counts, above the other nobody reads places.
+/// Tolerances \[mm\] that a table can have: below the first one the rounding of a search counts; above the other one places are useless.
 const TOLERANCES: Interval = Interval::new(1e-6, 1.0);
 
 /// Widest range \[mm\]: far beyond any play of a wheelset.
@@ -20,14 +20,15 @@ const WIDEST: f64 = 200.0;
 /// Builds a table.
 ///
 /// Method: searches every 0.02 mm. Where the elements that touch differ, or a near miss may close in between, the step is halved until
-/// its parts are clear or narrower than [`BREAK`](super::BREAK). Between breaks every quantity is interpolated at nine Chebyshev points, on cells
-/// that are halved until eight other points agree to a quarter of the tolerance.
-/// Accuracy: [`TableQuantity::error`]. Cost: some 2500 searches for a drawn pair over 18 mm, 5000 for a measured one, most of which begin from
-/// one nearby; on the threads of the current rayon pool, and any number of threads gives the same bits.
+/// its parts are clear or narrower than [`BREAK`](super::BREAK). Between breaks every quantity is interpolated at nine Chebyshev
+/// points, on cells that are halved until eight other points agree to a quarter of the tolerance. [`crate::docs::tables`] has the method
+/// over a range of yaws. Accuracy: [`TableQuantity::error`]. Cost: some 2500 searches for a drawn pair over 18 mm, 5000 for a measured
+/// one, most of which begin from one nearby; on the threads of the current rayon pool, and any number of threads gives the same bits.
 ///
 /// # Errors
-/// A range that is empty or wider than 200 mm; a tolerance outside 1e-6 to 1 mm; an angle beyond ±0.5 rad; a rail that varies along the track, and a
-/// roller; no contact in the whole range.
+/// A range that is empty or wider than 200 mm; yaws that descend; a tolerance outside 1e-6 to 1 mm; an angle beyond ±0.5 rad; a rail
+/// that varies along the track, or a roller; more than 10,000 hops and joints close together, or 15,000 cells over a range of yaws; no
+/// contact in the whole range.
 pub fn build(system: &WheelsetOnTrack, asked: &Asked) -> Result<ContactTable> {
     check(system, asked)?;
     let radius = system.right().wheelset().radius;
@@ -77,7 +78,7 @@ fn check(system: &WheelsetOnTrack, asked: &Asked) -> Result<()> {
         ));
     }
     if !system.on_plain_rails() {
-        let found = "a rail that varies along the track, or a roller";
+        let found = "a rail or wheel that varies, or a roller";
         return Err(Error::new("table: rail", found, "rails of one profile", "take one slice of the rail"));
     }
     Ok(())

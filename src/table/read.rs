@@ -14,7 +14,7 @@ use crate::numerics::interval::Interval;
 /// Columns of a number.
 const WIDTH: usize = 25;
 
-/// Most cells of a table: some hundred times what rough measured profiles make; they take 2 GB.
+/// Most cells of a table: some hundred times what rough measured profiles make; under one yaw they take 2 GB.
 const MOST_CELLS: usize = 1_000_000;
 
 /// The lines of a table, with the number of the next one.
@@ -53,12 +53,14 @@ pub(super) fn parse(text: &str) -> Result<Parsed> {
         [cells, count, powers, YAW_COEFFICIENTS, 0, 0]
     };
     let most = [cells, curves, forks].into_iter().max().unwrap_or_default();
-    if [powers, yaw_powers] != [COEFFICIENTS, YAW_COEFFICIENTS] || most > MOST_CELLS || count > MOST {
-        let found = format!("{cells} {count} {powers} {yaw_powers} {curves} {forks}");
-        let expected = format!(
-            "at most {MOST_CELLS} cells, known quantities, {COEFFICIENTS} and {YAW_COEFFICIENTS} coefficients"
-        );
-        return Err(deck.wrong(&found, &expected).of_kind(ErrorKind::Limit));
+    let found = || format!("{cells} {count} {powers} {yaw_powers} {curves} {forks}");
+    if [powers, yaw_powers] != [COEFFICIENTS, YAW_COEFFICIENTS] || count > MOST {
+        let expected = format!("known quantities, {COEFFICIENTS} and {YAW_COEFFICIENTS} coefficients");
+        return Err(deck.wrong(&found(), &expected));
+    }
+    if most > MOST_CELLS {
+        let expected = format!("at most {MOST_CELLS} cells, curves and forks");
+        return Err(deck.wrong(&found(), &expected).of_kind(ErrorKind::Limit));
     }
     let lateral = Interval::from(deck.numbers(0)?);
     let (yaw, radius, tolerance) = if over_yaw {

@@ -1,8 +1,8 @@
 //! Divides the plane of lateral displacement and yaw into cells, along the curves at which other elements touch.
 //!
-//! A region lies between two curves and two yaws. It is looked at along rows: the nodes of polynomials of the yaw and points between them, or
-//! one row where the table has one yaw. Breaks that follow each other alike in all rows are curves, which divide the region. Where rows
-//! differ, curves cross, begin or end in between: the yaw of that is found, and the region is divided there.
+//! A region lies between two curves and two yaws. It is searched along rows: the nodes of polynomials of the yaw and points between
+//! them, or one row where the table has one yaw. Breaks that follow each other alike in all rows are curves, which divide the region.
+//! Where rows differ, curves cross, begin or end in between: the yaw of that is found, and the region is divided there.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -28,34 +28,34 @@ const NEAR: f64 = 2.5e-8;
 /// Width \[rad\] to which the yaw of a crossing is found: places move by less than 1e-6 mm over it.
 const CROSSING: f64 = 1e-9;
 
-/// Width \[rad\] below which a region is that of its middle: places move by less than 5e-5 mm over it.
+/// Width \[rad\] up to which a region has the values of its middle: places move by less than 5e-5 mm over it.
 const NARROWEST: f64 = 1e-7;
 
 /// Share of a tolerance up to which a jump at a joint may stay inside a cell.
 const WEAK: f64 = 0.1;
 
-/// Width \[mm\] without breaks that is cut off from where they begin, end and cross each other.
+/// Width \[mm\] above which a part without breaks is cut off from where breaks begin, end and cross each other.
 const WIDE: f64 = 0.1;
 
-/// Distance \[mm\] from breaks at which it is cut off.
+/// Distance \[mm\] from breaks at which a part without breaks is cut off.
 const BESIDE: f64 = 0.02;
 
 /// Most cells of a table over yaw: 200 MB.
 const MOST_CELLS: usize = 15_000;
 
-/// What changes at a break, on the left and on the right side.
+/// What changes at a break, on the left and on the right side; `None` on a side without a change.
 type Change = [Option<[Option<SideTopology>; 2]>; 2];
 
 /// A curve that divides a region, with its breaks in all rows.
 type DividingCurve = (Vec<Break>, Curve);
 
-/// A region, and what is known of it.
+/// A region with its curves, rows and changes.
 struct Region {
-    /// Where it begins and ends.
+    /// The curves at which it begins and ends.
     curves: [Curve; 2],
-    /// Ascending; one or [`ROWS`].
+    /// The rows by ascending yaw: one or [`ROWS`].
     rows: Vec<BreakRow>,
-    /// Changes that are curves whatever jumps there.
+    /// Changes whose breaks are curves even if no quantity jumps there.
     strong: Vec<Change>,
 }
 
@@ -80,7 +80,7 @@ impl Division {
     }
 }
 
-/// What regions are divided with.
+/// The wheelset, request and quantities with which regions are divided, and the number of cells made.
 pub(super) struct Divider<'a> {
     system: &'a WheelsetOnTrack,
     asked: &'a Asked,
@@ -104,7 +104,8 @@ impl<'a> Divider<'a> {
         self.divide(Region { curves, rows, strong: Vec::new() })
     }
 
-    /// Looks at the rows between two yaws \[rad\], but for known ones at the ends.
+    /// Finds the rows between two yaws \[rad\], so far `inside` the curves \[mm\]. Known rows at the ends are not searched again. Yaws
+    /// closer than [`NARROWEST`] have one row, in their middle.
     fn rows(
         &self,
         curves: &[Curve; 2],
@@ -141,7 +142,7 @@ impl<'a> Divider<'a> {
             match fit(self.system, self.asked, self.quantities, &region.curves, &mut region.rows)? {
                 RegionFit::Cell(cell) => {
                     let made = self.made.fetch_add(1, Ordering::Relaxed);
-                    if made > MOST_CELLS && region.rows.len() > 1 {
+                    if made >= MOST_CELLS && region.rows.len() > 1 {
                         return Err(too_many());
                     }
                     return Ok(Division::Cell(cell));
@@ -176,8 +177,8 @@ impl<'a> Divider<'a> {
         Ok(Division::Along(parts, curves))
     }
 
-    /// Finds displacements that cut off what is wider than [`WIDE`] without breaks in any row: what happens to breaks then divides no more
-    /// than their surroundings.
+    /// Finds displacements that cut off parts wider than [`WIDE`] without breaks in any row. Only the surroundings of the breaks are then
+    /// divided at a yaw.
     fn beside(&self, region: &Region, lists: &[Vec<usize>]) -> Result<Vec<DividingCurve>> {
         let of_row = |(row, list): (&BreakRow, &Vec<usize>)| -> Vec<f64> {
             list.iter().map(|&b| row.breaks[b][0].lateral).collect()
@@ -228,8 +229,8 @@ impl<'a> Divider<'a> {
         Ok(Division::Along(vec![low?, high?], vec![curve]))
     }
 
-    /// Finds two rows, as close as [`CROSSING`], between which the changes become others, as near to the middle as there are such; the middle
-    /// row twice where they are the same in all rows.
+    /// Finds two rows, as close as [`CROSSING`], between which the changes differ, in the gap of rows nearest to the middle where they do;
+    /// returns the middle row twice where the changes are the same in all rows.
     fn crossing(&self, region: &Region, lists: &[Vec<usize>]) -> Result<[BreakRow; 2]> {
         let marks = |k: usize| marks_of(&region.rows[k], &lists[k]);
         let differ = |k: &usize| !changes(&marks(k - 1)).eq(changes(&marks(*k)));
@@ -249,14 +250,14 @@ impl<'a> Divider<'a> {
             (yaws[usize::from(!same)], sides[usize::from(!same)]) = (yaw, middle);
         }
         if yaws[0] == ends[0] || yaws[1] == ends[1] {
-            // A row that has what no other has, even beside it: half of the yaws have it no more.
+            // The changes of the row at one end are found nowhere beside it: the yaws are divided in their middle.
             yaws = [ends[0] + (ends[1] - ends[0]) / 2.0; 2];
         }
         let row = |yaw| self.row_between(&region.curves, yaw, INSIDE, Interval::ALL);
         Ok([row(yaws[0])?, row(yaws[1])?])
     }
 
-    /// Looks at a row between two curves, so far inside them, and between two displacements \[mm\].
+    /// Finds the row under a yaw between two curves, so far `inside` them, and within a range of displacements \[mm\].
     fn row_between(&self, curves: &[Curve; 2], yaw: f64, inside: f64, range: Interval) -> Result<BreakRow> {
         let all = between(curves, yaw);
         row(self.system, self.asked, yaw, all.grown(-inside.min(all.width() / 2.0)).cut(range))
@@ -271,7 +272,7 @@ fn changes(marks: &[BreakMark]) -> impl Iterator<Item = Change> {
     marks.iter().map(|mark| mark.0)
 }
 
-/// Narrows a range of displacements \[mm\] to where two rows change otherwise, and leaves out the breaks outside.
+/// Narrows a range of displacements \[mm\] to where the changes of two rows differ, and leaves out the breaks outside.
 fn narrowed(sides: &mut [Vec<BreakMark>; 2], range: Interval) -> Interval {
     let low = alike_until(sides).unwrap_or(f64::NEG_INFINITY);
     let behind = alike_until(&sides.each_ref().map(|marks| mirrored(marks)));
@@ -290,13 +291,13 @@ fn marks_of(row: &BreakRow, list: &[usize]) -> Vec<BreakMark> {
     list.iter().map(|&b| &row.breaks[b]).map(|b| (change(b), laterals(b))).collect()
 }
 
-/// Turns the order of breaks round.
+/// Reverses the order of breaks and the sign of their displacements.
 fn mirrored(marks: &[BreakMark]) -> Vec<BreakMark> {
     marks.iter().rev().map(|&(change, place)| (change, -place)).collect()
 }
 
-/// Returns a displacement \[mm\] up to which two rows have the same changes, which are all before it in both, and all others behind it;
-/// `None` where there is none behind the first break.
+/// Returns the last displacement \[mm\] that divides the breaks of two rows such that those before it have the same changes in both, and
+/// at least one is on each side; `None` if there is none.
 fn alike_until([low, high]: &[Vec<BreakMark>; 2]) -> Option<f64> {
     let same = low.iter().zip(high).take_while(|(a, b)| a.0 == b.0).count();
     (1..=same).rev().find_map(|p| {
@@ -341,14 +342,14 @@ impl Region {
         Interval::new(self.rows[0].yaw, self.rows[self.rows.len() - 1].yaw)
     }
 
-    /// Adds the changes that jump in any row: they are curves in all.
+    /// Adds the changes at which a quantity jumps in any row: their breaks are curves in all rows.
     fn strengthen(&mut self, quantities: &[TableQuantity]) {
         let breaks = self.rows.iter().flat_map(|row| &row.breaks);
         let found: Vec<Change> = breaks.filter(|b| jumps(b, quantities)).map(change).collect();
         self.add(found);
     }
 
-    /// Makes curves of all breaks; tells whether there were others.
+    /// Makes curves of all breaks; tells whether any was not a curve before.
     fn promote(&mut self) -> bool {
         let before = self.strong.len();
         let all: Vec<Change> = self.rows.iter().flat_map(|row| &row.breaks).map(change).collect();
@@ -368,7 +369,7 @@ impl Region {
         self.rows.iter().map(|row| list(row, &self.strong, quantities)).collect()
     }
 
-    /// Gives the breaks of all rows, first with first and so on; none where rows have other numbers of them, or other quantities exist
+    /// Gives the breaks of all rows, first with first and so on; none where rows differ in their number, or in the quantities that exist
     /// beside them.
     fn in_order(&self, lists: &[Vec<usize>]) -> Vec<Vec<Break>> {
         let exist =
@@ -414,13 +415,13 @@ impl Region {
         places.iter().filter(stays).map(|places| at(places)).collect()
     }
 
-    /// Fits curves through breaks of all rows, and gives those that err by no more than [`NEAR`], in ascending order.
+    /// Fits curves through breaks of all rows, and gives those with errors of at most [`NEAR`], in ascending order.
     fn accurate(&self, all: Vec<Vec<Break>>) -> Vec<DividingCurve> {
         let mut last = self.curves[0];
         let mut cuts = Vec::new();
         for breaks in all {
             let (curve, error) = self.curve(&breaks);
-            // At the yaw of a crossing curves may cross by what they err.
+            // At the yaw of a crossing curves may cross by their errors.
             let ordered = |row: &BreakRow| last.at(row.yaw) <= curve.at(row.yaw) + 2.0 * NEAR;
             if error <= NEAR && self.rows.iter().all(ordered) {
                 last = curve;

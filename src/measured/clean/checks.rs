@@ -118,7 +118,7 @@ pub(in crate::measured) fn wrong_unit(points: &[Point], unit: f64, stated: bool)
         _ => format!("give the right `unit`: {} would do", names.join(" or ")),
     };
     let expected = if WIDTHS.contains(&wide) {
-        "60 to 140 mm, as rails and wheels have, or a `unit`"
+        "60 to 150 mm, as rails and wheels have, or a `unit`"
     } else {
         "5 to 500 mm"
     };

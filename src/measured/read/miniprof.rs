@@ -207,10 +207,12 @@ impl MiniProfHeader {
         let key = key.to_lowercase();
         match key.as_str() {
             "columndef" if !value.is_empty() => self.set_columns(line, value)?,
-            "xoffset" => self.offset[0] = optional(line, value)?,
-            "yoffset" => self.offset[1] = optional(line, value)?,
+            "xoffset" => self.offset[0] = optional(line, value, "offset")?,
+            "yoffset" => self.offset[1] = optional(line, value, "offset")?,
             "xypoints" => self.count = count(line, value)?,
-            "diametertaperline" => self.diameter = Some(optional(line, value)?).filter(|value| *value > 0.0),
+            "diametertaperline" => {
+                self.diameter = Some(optional(line, value, "diameter")?).filter(|value| *value > 0.0);
+            }
             "mpdc" => self.element_count = count(line, value)?,
             _ => {
                 if let Some(k) = key.strip_prefix("mpd").and_then(|k| k.parse().ok()) {
@@ -257,9 +259,9 @@ impl MiniProfHeader {
 }
 
 /// Reads a number that may be left out; it is then 0.
-fn optional(line: Line, value: &str) -> Result<f64> {
+fn optional(line: Line, value: &str, what: &str) -> Result<f64> {
     let value = Line { text: value, ..line }.without_comment(&COMMENTS).text;
-    if value.is_empty() { Ok(0.0) } else { line.number(value, "offset") }
+    if value.is_empty() { Ok(0.0) } else { line.number(value, what) }
 }
 
 fn count(line: Line, value: &str) -> Result<Option<(usize, usize)>> {

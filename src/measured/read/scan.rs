@@ -43,7 +43,9 @@ pub(in crate::measured) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
 }
 
 fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Result<String> {
-    let units = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    // An odd last byte counts as half of a pair.
+    let last = bytes.chunks_exact(2).remainder().first().map(|_| 0xd800);
+    let units = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).chain(last);
     let mut text = String::with_capacity(bytes.len() / 2);
     for c in char::decode_utf16(units) {
         let c = c.map_err(|_| {
@@ -188,6 +190,15 @@ mod tests {
         assert_eq!(line("\"1.5\",\"2.5\"").fields()?, ["1.5", "2.5"]);
         let error = line("1,5 2,5").fields().err().map(|e| e.place);
         assert_eq!(error.as_deref(), Some("line 7"));
+        Ok(())
+    }
+
+    #[test]
+    fn half_a_unit_of_utf_16_is_broken() -> Result<()> {
+        let bytes: Vec<u8> = "\u{feff}1 2\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(text(&bytes)?, "1 2\n");
+        let cut = text(&bytes[..bytes.len() - 1]).expect_err("an odd number of bytes");
+        assert!(cut.to_string().contains("broken UTF-16"), "{cut}");
         Ok(())
     }
 

@@ -16,7 +16,7 @@ fn a_file_in_inches_is_asked_for_its_unit_and_for_what_else_is_open() -> Result<
     let (_, wheel) = s1002(0.3)?;
     let rail = write::sample(&standards::rail("60E1")?, 0.3)?;
     let found = complaint("w.csv", &scaled(&wheel, 25.4), Side::Wheel, &Options::default());
-    let expected = "w.csv: unit: found a width of 5.11811 mm; expected 60 to 140 mm, as rails and wheels have, or a `unit`; \
+    let expected = "w.csv: unit: found a width of 5.11811 mm; expected 60 to 150 mm, as rails and wheels have, or a `unit`; \
                     give the right `unit`: \"in\" or \"cm\" would do";
     assert_eq!(found, expected);
     let found = complaint("r.csv", &scaled(&rail, 25.4), Side::Rail, &Options::default());

@@ -113,6 +113,8 @@ fn a_wheel_is_periodic_and_round_outside_its_list() -> Result<()> {
     };
     assert_eq!(files(0.0)?, ["round.txt"]);
     assert_eq!(files(3.0)?, ["flat.txt"]);
+    assert_eq!(files(-3.0)?, ["flat.txt"]);
+    assert_eq!(files(-2.0)?, ["round.txt"]);
     assert_eq!(files(0.35 - TAU)?, ["round.txt", "flat.txt"]);
     assert_eq!(files(0.35 + 2.0 * TAU)?, ["round.txt", "flat.txt"]);
     Ok(())
