@@ -33,13 +33,16 @@ const SEED: u64 = 1979;
 /// Yaw of the wheel in the yawed cases \[rad\].
 const YAW: f64 = 0.01;
 
+/// Radius of the rollers \[mm\].
+const ROLLER: f64 = 350.0;
+
 /// Names of the parts of a case, in order.
 pub const PARTS: [&str; 6] = ["touch", "place", "plan", "fill", "patch", "mesh"];
 
 /// Times of the parts of one case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WholeCase {
-    /// Kind of the pair: "drawn" or "measured", with or without ", yawed".
+    /// Kind of the pair, one of [`CASES`].
     pub pair: &'static str,
     /// Number n of the n × n grid.
     pub side: usize,
@@ -60,7 +63,14 @@ impl WholeCase {
 }
 
 /// Names of the cases.
-pub const CASES: [&str; 4] = ["drawn", "measured", "drawn, yawed", "measured, yawed"];
+pub const CASES: [&str; 6] = [
+    "drawn",
+    "measured",
+    "drawn, yawed",
+    "measured, yawed",
+    "drawn, on a roller, yawed",
+    "measured, on a roller, yawed",
+];
 
 /// Times cases of a centred wheel on its rail, with and without yaw: lowered, placed, with a grid of n × n points at full
 /// precision, the patch in its window and the patch's mesh. Each part runs for at least `seconds`. Call it on
@@ -143,6 +153,7 @@ pub fn with_parts<T>(case: &str, side: usize, then: impl FnOnce(&mut dyn FnMut(&
     };
     let [rail, wheel] = profiles;
     let (pair, yaw) = (inclined_pair(&rail, wheel)?, if case.ends_with("yawed") { YAW } else { 0.0 });
+    let pair = if case.contains("roller") { pair.on_roller(ROLLER)? } else { pair };
     let profiles = ProfilePair::new(&pair)?;
     let mut search = profiles.search();
     let (pose, selection) = (Pose::new(0.0, yaw, 0.0)?, Selection { within: 0.0, apart: ONE_CONTACT });
