@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::conicity_noise::{Noise, Uncertainty, uncertainty};
-use super::input::{Case, Place};
+use super::input::{Arrangement, Case};
 use crate::error::{Error, ErrorKind, Result, finite, in_order};
 use crate::placement::Pair;
 use crate::profile::trace;
@@ -148,7 +148,7 @@ impl ConicityReport {
 /// # Errors
 /// A case without wheelset; a given roll; options without meaning; samples of which none can be computed.
 pub fn conicity(case: &Case, options: &ConicityOptions, told: &dyn Fn(&str)) -> Result<ConicityReport> {
-    let Place::Wheelset { system, position } = &case.standing().place else {
+    let Arrangement::Wheelset { system, position } = &case.setup().arrangement else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new(
             "",

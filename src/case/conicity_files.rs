@@ -9,7 +9,7 @@ use super::conicity::{ConicityReport, FUNCTIONS, KEY_FIGURES};
 use super::conicity_noise::{UNCERTAIN, Uncertainty};
 use super::curves::curves;
 use super::doubts::DoubtSet;
-use super::input::{Case, Place};
+use super::input::{Arrangement, Case};
 use super::sweep_view::{page_of, swept};
 use crate::error::{Error, Result};
 use crate::export::{
@@ -147,9 +147,9 @@ pub fn conicity_page(case: &Case, report: &ConicityReport) -> Result<SweepPage> 
 }
 
 fn wheelset(case: &Case) -> Result<&WheelsetOnTrack> {
-    match &case.standing().place {
-        Place::Wheelset { system, .. } => Ok(system),
-        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => {
+    match &case.setup().arrangement {
+        Arrangement::Wheelset { system, .. } => Ok(system),
+        Arrangement::Points { .. } | Arrangement::Wheel { .. } | Arrangement::OnSlices { .. } => {
             let expected = "[track] and [wheelset]";
             Err(Error::new("", "a single wheel", expected, "conicity is that of a wheelset on its track"))
         }

@@ -18,16 +18,16 @@ pub struct Found {
     /// Number on its side, from 1.
     pub contact: usize,
     /// This contact.
-    pub place: PlaceOfContact,
+    pub place: ListedContact,
     /// Places whose patches overlap that of this contact, or are merged with it: they are one region with it.
-    pub merged: Vec<PlaceOfContact>,
+    pub merged: Vec<ListedContact>,
     /// Other places on this side within `within` that are no contact of their own and merged with none.
-    pub near_misses: Vec<PlaceOfContact>,
+    pub near_misses: Vec<ListedContact>,
 }
 
 /// A place of contact or near miss.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct PlaceOfContact {
+pub struct ListedContact {
     /// Abscissa on the rail profile \[mm\].
     pub rail_x_mm: f64,
     /// Abscissa on the wheel profile \[mm\].
@@ -67,7 +67,7 @@ impl Found {
     }
 }
 
-impl From<&search::Contact> for PlaceOfContact {
+impl From<&search::Contact> for ListedContact {
     fn from(c: &search::Contact) -> Self {
         Self {
             rail_x_mm: c.rail_x,

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix4, Point3, Vector3, Vector4};
 
 use super::drawn::{loops_of, quads};
-use super::input::Place;
+use super::input::Arrangement;
 use super::run::{Part, Run};
 use crate::export::{ContactInPlace, InPlace, Loop, QuadMesh};
 use crate::mesh::{BodyShell, axle_point};
@@ -28,16 +28,18 @@ const SHELL: f64 = 0.02;
 pub(super) fn to_track(run: &Run, part: &Part) -> Matrix4<f64> {
     let placement = &part.site.contact.placement;
     let left = part.site.side() == Some(TrackSide::Left);
-    let (rail, half) = match &run.case.standing.place {
-        Place::Wheelset { system, .. } => {
+    let (rail, half) = match &run.case.setup.arrangement {
+        Arrangement::Wheelset { system, .. } => {
             let side = if left { system.left() } else { system.right() };
             ([side.track().rail_x(), side.track().rail_z()], side.wheelset().wheel_x())
         }
-        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => ([0.0; 2], 0.0),
+        Arrangement::Points { .. } | Arrangement::Wheel { .. } | Arrangement::OnSlices { .. } => {
+            ([0.0; 2], 0.0)
+        }
     };
     if let Some(lofted) = placement.lofted_rail() {
         let [x, y, z] = lofted.origin();
-        let origin = Vector4::new(x, y - run.case.standing.along, z, 1.0);
+        let origin = Vector4::new(x, y - run.case.setup.along, z, 1.0);
         let columns = lofted.axes().map(|[x, y, z]| Vector4::new(x, y, z, 0.0));
         let frame = Matrix4::from_columns(&[columns[0], columns[1], columns[2], origin]);
         return mirrored_to(left, rail) * frame;
@@ -107,11 +109,11 @@ fn joined(shells: impl Iterator<Item = BodyShell>) -> BodyShell {
 }
 
 fn statements(run: &Run) -> Vec<String> {
-    let axes = match run.case.standing.place {
-        Place::Wheelset { .. } => {
+    let axes = match run.case.setup.arrangement {
+        Arrangement::Wheelset { .. } => {
             "track axes: x to the right, y forward, z up; origin in the middle, top of rail"
         }
-        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => {
+        Arrangement::Points { .. } | Arrangement::Wheel { .. } | Arrangement::OnSlices { .. } => {
             "axes of the rail profile: x to the field side, y along, z up"
         }
     };

@@ -26,7 +26,7 @@ use crate::separation::Method;
 #[derive(Debug, Clone)]
 pub struct Case {
     pub(crate) profiles: Profiles,
-    pub(crate) standing: Standing,
+    pub(crate) setup: Setup,
     pub(crate) question: Question,
     pub(crate) axes: AskedAxes,
     pub(crate) outputs: Outputs,
@@ -120,9 +120,9 @@ impl Profiles {
 
 /// Where the bodies stand, and how far near misses are looked for.
 #[derive(Debug, Clone)]
-pub struct Standing {
+pub struct Setup {
     /// What is placed, and where.
-    pub place: Place,
+    pub arrangement: Arrangement,
     /// Largest vertical gap \[mm\] of a near miss that is reported; usually 0.
     pub within: f64,
     /// Whether the roll of a wheelset, where it is solved, is that at which each wheel carries its load.
@@ -135,7 +135,7 @@ pub struct Standing {
 
 /// The ways to place bodies.
 #[derive(Debug, Clone)]
-pub enum Place {
+pub enum Arrangement {
     /// Both profiles touch at chosen points of them, the Report's way.
     Points {
         /// Abscissa on the rail profile \[mm\].
@@ -321,8 +321,8 @@ impl Case {
 
     /// Gives the same case with its bodies elsewhere, under another echo. It shares the profiles and the search trees.
     #[must_use]
-    pub fn at(&self, standing: Standing, echo: Echo) -> Self {
-        Self { standing, echo, ..self.clone() }
+    pub fn at(&self, setup: Setup, echo: Echo) -> Self {
+        Self { setup, echo, ..self.clone() }
     }
 
     /// Gives the same case as one of many: without the page of every run, unless the scene names that format.
@@ -345,8 +345,8 @@ impl Case {
     }
 
     /// Gives where the bodies stand.
-    pub fn standing(&self) -> &Standing {
-        &self.standing
+    pub fn setup(&self) -> &Setup {
+        &self.setup
     }
 
     /// Gives what is asked of every contact.

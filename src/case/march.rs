@@ -127,10 +127,10 @@ impl MarchCase {
             Some(case) if !stop.rows.is_empty() => {
                 let mut here = case.clone();
                 let place = if course == AROUND {
-                    here.standing.pitch = along;
+                    here.setup.pitch = along;
                     format!("angle {along} rad")
                 } else {
-                    here.standing.along = along;
+                    here.setup.along = along;
                     format!("along {along} mm")
                 };
                 let rows = rows_under_load(&here).map_err(|error| error.within(place))?;

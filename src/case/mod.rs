@@ -63,11 +63,11 @@ pub use elements::patch_mesh;
 pub use facts::{FACTS, Fact};
 pub use files::{Rasterise, WrittenFile, WrittenPart, files, summaries, write};
 pub use formats::{OutputFormat, PATCHES_FOLDER, RUN_FOLDER, run_files};
-pub use found::{Found, PlaceOfContact};
+pub use found::{Found, ListedContact};
 pub use grids::Grid;
 pub use input::{
-    ApproachBy, AskedAxes, AskedPressure, Case, Echo, FrameOrigin, Friction, Outputs, Place, Profiles,
-    Question, SideProfiles, Standing,
+    ApproachBy, Arrangement, AskedAxes, AskedPressure, Case, Echo, FrameOrigin, Friction, Outputs, Profiles,
+    Question, Setup, SideProfiles,
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};

@@ -5,8 +5,8 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::contact::PlacedContact;
-use super::found::{Found, PlaceOfContact};
-use super::input::{ApproachBy, Case, FrameOrigin, Place};
+use super::found::{Found, ListedContact};
+use super::input::{ApproachBy, Arrangement, Case, FrameOrigin};
 use super::overlaps::RegionRules;
 use super::wheel::{ContactRegion, OnLoft, SinkingWheel, carry, placed_at};
 use crate::error::{Error, Result};
@@ -42,7 +42,7 @@ struct TouchedSide {
 /// No contact, or more than are listed; a load that no approach carries.
 pub fn contacts(case: &Case) -> Result<Vec<(String, Placement)>> {
     // A chosen contact is one whatever the approach.
-    let chosen = matches!(case.standing.place, Place::Points { .. });
+    let chosen = matches!(case.setup.arrangement, Arrangement::Points { .. });
     let placed = find(case, case.question.approach.filter(|_| !chosen))?;
     Ok(placed.into_iter().map(|contact| (contact.name(), contact.placement)).collect())
 }
@@ -68,7 +68,9 @@ pub fn approach_under_load(placement: &Placement, load: f64, modulus: f64) -> Re
 /// No contact, or more than are listed; a load that no approach carries.
 pub fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact>> {
     let modulus = case.question.modulus();
-    let Place::Points { rail_x, wheel_x } = &case.standing.place else { return search(case, approach) };
+    let Arrangement::Points { rail_x, wheel_x } = &case.setup.arrangement else {
+        return search(case, approach);
+    };
     let placement = case.profiles.right.pair.placed(*rail_x, *wheel_x, 0.0)?;
     let start = Instant::now();
     let contact = match approach {
@@ -107,7 +109,7 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact
 /// # Errors
 /// No contact; a load that no approach carries; no roll that the loads settle at.
 pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<ContactRegion>)>> {
-    let Place::Wheelset { position, .. } = &case.standing.place else { return Ok(Vec::new()) };
+    let Arrangement::Wheelset { position, .. } = &case.setup.arrangement else { return Ok(Vec::new()) };
     let (sides, regions, _) = closed(case, case.question.approach)?;
     let radius =
         |k: usize| sides.get(k).and_then(|side| side.places.first()).map_or(f64::NAN, |at| at.rolling_radius);
@@ -116,7 +118,7 @@ pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<Conta
     for (side, mut regions) in sides.iter().zip(regions).rev() {
         let held: Vec<usize> = regions.iter().map(|region| region.place).collect();
         let reached =
-            |(k, place): &(usize, &search::Contact)| place.gap <= case.standing.within || held.contains(k);
+            |(k, place): &(usize, &search::Contact)| place.gap <= case.setup.within || held.contains(k);
         for (number, (k, place)) in side.places.iter().enumerate().filter(reached).enumerate() {
             let row = SweepRow {
                 lateral: position.lateral,
@@ -141,7 +143,7 @@ fn closed(
     case: &Case,
     approach: Option<ApproachBy>,
 ) -> Result<(Vec<TouchedSide>, Vec<Vec<ContactRegion>>, f64)> {
-    let nearest = case.standing.within.max(match approach {
+    let nearest = case.setup.within.max(match approach {
         Some(ApproachBy::Given(approach)) => STEEPEST * approach,
         _ => 0.0,
     });
@@ -193,7 +195,7 @@ fn sunk(
     if !follows(case) {
         return Ok((sides, found));
     }
-    let Place::Wheelset { system, .. } = &case.standing.place else { return Ok((sides, found)) };
+    let Arrangement::Wheelset { system, .. } = &case.setup.arrangement else { return Ok((sides, found)) };
     let spread = system.right().track().rail_x() + system.left().track().rail_x();
     let (mut range, mut before) = (Interval::ALL, None);
     for _ in 0..MOST_ROLLS {
@@ -238,31 +240,30 @@ fn sunk(
 
 /// Tells whether the roll of a case follows its loads.
 fn follows(case: &Case) -> bool {
-    let solved =
-        matches!(&case.standing.place, Place::Wheelset { position, .. } if position.roll == Roll::Solve);
-    solved && case.standing.roll_by_load
+    let solved = matches!(&case.setup.arrangement, Arrangement::Wheelset { position, .. } if position.roll == Roll::Solve);
+    solved && case.setup.roll_by_load
 }
 
 /// Lowers a wheel or a wheelset, and gives the places of contact with vertical gaps up to `within` \[mm\]. The right-hand
 /// side, which is the one that is described, comes first. `roll` \[rad\] takes the place of a wheelset's own.
 fn sides(case: &Case, within: f64, roll: Option<f64>) -> Result<Vec<TouchedSide>> {
     let selection = Selection { within, apart: ONE_CONTACT };
-    match &case.standing.place {
-        Place::Points { .. } => Ok(Vec::new()),
-        Place::Wheel { profiles, pose } => {
+    match &case.setup.arrangement {
+        Arrangement::Points { .. } => Ok(Vec::new()),
+        Arrangement::Wheel { profiles, pose } => {
             let mut search = profiles.search();
             let touch = search.touch(pose, &selection)?;
             let places = touch.contacts.to_vec();
             Ok(vec![TouchedSide { side: None, height: touch.height, roll: pose.roll(), places }])
         }
-        Place::OnSlices { pair, pose } => {
-            let standing = [case.standing.along, case.standing.pitch];
+        Arrangement::OnSlices { pair, pose } => {
+            let standing = [case.setup.along, case.setup.pitch];
             let (height, places) = pair.touch(pose, standing, &selection)?;
             Ok(vec![TouchedSide { side: None, height, roll: pose.roll(), places }])
         }
-        Place::Wheelset { system, position } => {
+        Arrangement::Wheelset { system, position } => {
             let mut search = system.search();
-            search.stand_at(case.standing.along, case.standing.pitch);
+            search.stand_at(case.setup.along, case.setup.pitch);
             let position = Position { roll: roll.map_or(position.roll, Roll::Fixed), ..*position };
             let touch = search.touch(&position, &selection)?;
             let side = |side, k: usize| {
@@ -320,10 +321,12 @@ fn regions(case: &Case, sides: &[TouchedSide], approach: Option<ApproachBy>, mos
 /// Gives the body of a side that varies.
 fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
     let body = case.profiles.on(side).varying.as_ref()?;
-    let along = case.standing.along;
-    let from = match &case.standing.place {
-        Place::Wheelset { system, position } => system.along(side != Some(TrackSide::Left), position, along),
-        Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => along,
+    let along = case.setup.along;
+    let from = match &case.setup.arrangement {
+        Arrangement::Wheelset { system, position } => {
+            system.along(side != Some(TrackSide::Left), position, along)
+        }
+        Arrangement::Points { .. } | Arrangement::Wheel { .. } | Arrangement::OnSlices { .. } => along,
     };
     Some(OnLoft { body, from })
 }
@@ -356,9 +359,9 @@ fn unborne(key: &str, load: f64, side: Option<TrackSide>) -> Error {
 impl TouchedSide {
     /// Makes contacts of the regions; without any, which is without an approach, of the places within reach.
     fn contacts(&self, case: &Case, regions: Vec<ContactRegion>, load_s: f64) -> Result<Vec<PlacedContact>> {
-        let within = case.standing.within;
+        let within = case.setup.within;
         let modulus = case.question.modulus();
-        let of = |indices: &[usize]| indices.iter().map(|&k| PlaceOfContact::from(&self.places[k])).collect();
+        let of = |indices: &[usize]| indices.iter().map(|&k| ListedContact::from(&self.places[k])).collect();
         let mut placed = Vec::new();
         if regions.is_empty() {
             for place in self.places.iter().take_while(|place| place.gap <= within) {
@@ -372,7 +375,7 @@ impl TouchedSide {
         let own: Vec<usize> =
             regions.iter().flat_map(|region| region.merged.iter().chain([&region.place])).copied().collect();
         let missed = (0..self.places.len()).filter(|k| !own.contains(k) && self.places[*k].gap <= within);
-        let missed: Vec<PlaceOfContact> = of(&missed.collect::<Vec<_>>());
+        let missed: Vec<ListedContact> = of(&missed.collect::<Vec<_>>());
         for region in regions {
             let (place, merged) = (&self.places[region.place], of(&region.merged));
             let near_misses = missed.clone();

@@ -7,7 +7,7 @@ use super::conformal::turning_warning;
 use super::doubts::Doubt;
 use super::found::Found;
 use super::grids::check_memory;
-use super::input::{Case, Place};
+use super::input::{Arrangement, Case};
 use super::landmarks::SideLandmarks;
 use super::pressure::PartPressure;
 use super::site::{Site, sites};
@@ -135,10 +135,10 @@ impl Run {
     pub fn creepages(&self, part: &Part) -> Result<Option<Creepages>> {
         let Some(motion) = self.case.question.motion else { return Ok(None) };
         let left = part.site.side() == Some(TrackSide::Left);
-        let half = match &self.case.standing.place {
-            Place::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
-            Place::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
-            Place::Points { .. } | Place::Wheel { .. } | Place::OnSlices { .. } => 0.0,
+        let half = match &self.case.setup.arrangement {
+            Arrangement::Wheelset { system, .. } if left => system.left().wheelset().wheel_x(),
+            Arrangement::Wheelset { system, .. } => system.right().wheelset().wheel_x(),
+            Arrangement::Points { .. } | Arrangement::Wheel { .. } | Arrangement::OnSlices { .. } => 0.0,
         };
         let motion = if left { motion.mirrored() } else { motion };
         motion.creepages(&part.site.contact.placement, half, self.free_radius()?).map(Some)
@@ -150,7 +150,7 @@ impl Run {
     /// # Errors
     /// Chosen points at which the pair cannot be placed.
     fn free_radius(&self) -> Result<f64> {
-        if let Place::Points { rail_x, wheel_x } = &self.case.standing.place {
+        if let Arrangement::Points { rail_x, wheel_x } = &self.case.setup.arrangement {
             let pair = &self.case.profiles.right.pair;
             return Ok(pair.placed(*rail_x, *wheel_x, 0.0)?.rolling_radius());
         }

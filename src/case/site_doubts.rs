@@ -1,7 +1,7 @@
 //! Doubts about the sites of a run: how their wheels stand, and how far bodies approach.
 
 use super::doubts::Doubt;
-use super::input::{Case, Place};
+use super::input::{Arrangement, Case};
 use super::landmarks::{Landmarks, SideLandmarks, Touching};
 use super::site::Site;
 use super::usual;
@@ -41,6 +41,6 @@ pub(super) fn doubts_of(site: &Site, landmarks: &SideLandmarks, other: f64) -> V
 
 /// Doubts the way that bodies are placed.
 pub(super) fn doubts_of_placing(case: &Case, site: &Site) -> Option<Doubt> {
-    let Place::Points { .. } = case.standing.place else { return None };
+    let Arrangement::Points { .. } = case.setup.arrangement else { return None };
     usual::tilt("contact", &site.contact.placement)
 }

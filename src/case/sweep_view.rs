@@ -200,7 +200,9 @@ mod tests {
         let text = include_str!("../../examples/scenes/wheelset.toml");
         let scene = crate::scene::parse(text, false).unwrap();
         let case = crate::scene::resolve(&scene, ".".as_ref(), "wheelset").unwrap();
-        let crate::case::Place::Wheelset { system, .. } = &case.standing.place else { panic!("no wheelset") };
+        let crate::case::Arrangement::Wheelset { system, .. } = &case.setup.arrangement else {
+            panic!("no wheelset")
+        };
         for yaw in [0.0, 0.02] {
             let lateral = [-6.0, 0.0, 3.0, 7.0];
             let positions = lateral.map(|lateral| Position { lateral, yaw, roll: Roll::Solve });

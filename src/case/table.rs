@@ -1,6 +1,6 @@
 //! The contact table of a case.
 
-use super::input::{ApproachBy, Case, Place};
+use super::input::{ApproachBy, Arrangement, Case};
 use crate::error::{Error, Result};
 use crate::export::{table_csv, table_nc, table_wrp};
 use crate::files::{Folder, Names};
@@ -27,12 +27,12 @@ pub fn table(
     tolerance: f64,
     hertz: bool,
 ) -> Result<ContactTable> {
-    let Place::Wheelset { system, position } = &case.standing.place else {
+    let Arrangement::Wheelset { system, position } = &case.setup.arrangement else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("table", "a single wheel", expected, "a table is of a wheelset on its track"));
     };
     case.profiles().swept("take `wheelrail march`")?;
-    if case.standing.roll_by_load {
+    if case.setup.roll_by_load {
         let expected = "\"solve\", \"neglect\" or an angle in rad";
         let advice = "a table is of wheels at first touch: change it";
         return Err(Error::new("wheelset: roll", "\"load\"", expected, advice));

@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use crate::case::{Place, Profiles};
+use crate::case::{Arrangement, Profiles};
 use crate::error::{Error, Result, in_order};
 use crate::files::{KeptFolder, Names};
 use crate::placement::Pair;
@@ -249,7 +249,7 @@ fn checked(scene: &Scene) -> Result<()> {
     let radius = scene.wheel.radius.unwrap_or(460.0);
     let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, radius)?;
     let case = scene::with_profiles(scene, Profiles::drawn(pair), "fleet")?;
-    let Place::Wheelset { position, .. } = &case.standing().place else {
+    let Arrangement::Wheelset { position, .. } = &case.setup().arrangement else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a fleet is of wheelsets on tracks"));
     };

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::list::Source;
 use super::listed::{Listed, PairNumber};
 use super::profiles::{Key, Shelf, data, keys};
-use crate::case::{Case, Place, Profiles, SideProfiles};
+use crate::case::{Arrangement, Case, Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::measure::{Measures, Quantity};
 use crate::numerics::bodies::Bodies;
@@ -188,8 +188,8 @@ impl FoundContact {
 /// # Errors
 /// A case without a wheelset.
 pub(super) fn wheelset(case: &Case) -> Result<(&WheelsetOnTrack, Position)> {
-    match &case.standing().place {
-        Place::Wheelset { system, position } => Ok((system, *position)),
+    match &case.setup().arrangement {
+        Arrangement::Wheelset { system, position } => Ok((system, *position)),
         _ => Err(Error::new("", "a single wheel", "[track] and [wheelset]", "a fleet is of wheelsets")),
     }
 }

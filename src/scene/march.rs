@@ -7,7 +7,7 @@ use super::data::Scene;
 use super::doubts::doubts_of_keys;
 use super::profiles::{Given, Resolved, rail_of};
 use super::resolve::{echo, with_profiles};
-use super::standing::{position, rails, wheels, within};
+use super::setup::{position, rails, wheels, within};
 use super::varying::{WheelBody, both_vary, list_of, loft, wheel};
 use crate::case::{Case, MarchCase, Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};

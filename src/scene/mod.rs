@@ -12,9 +12,9 @@ mod profile_data;
 mod profiles;
 mod read;
 mod resolve;
+mod setup;
 mod side_data;
 mod sides;
-mod standing;
 mod varying;
 pub(crate) mod words;
 
@@ -33,7 +33,7 @@ pub use profiles::{
 };
 pub use read::{load, parse};
 pub use resolve::{approach, echo, modulus, pressure_cell, resolve, resolve_given, to_toml, with_profiles};
+pub use setup::{distance, within};
 pub use side_data::{DeviationData, SideData};
-pub use standing::{distance, within};
 pub use varying::loft;
 pub use words::perhaps;

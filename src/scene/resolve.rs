@@ -9,9 +9,9 @@ use super::data::{MaterialData, PatchData, Scene};
 use super::doubts::doubts;
 use super::motion::{friction, motion};
 use super::profiles::Given;
+use super::setup::setup;
 use super::side_data::SideData;
 use super::sides::profiles;
-use super::standing::standing;
 use crate::case::{
     ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, Landmarks, OutputFormat, Outputs, Profiles,
     Question, SideLandmarks, SideProfiles,
@@ -70,14 +70,14 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
         return Err(on_roller());
     }
     let axes = asked_axes(&scene.grid)?;
-    let (standing, profiles) = standing(scene, profiles()?)?;
+    let (setup, profiles) = setup(scene, profiles()?)?;
     if let Some(side) = profiles.varying().next() {
         asked_of_varying(LoftedBody::name(side), &question)?;
     }
     let of = |own: &SideProfiles| Landmarks::new(&own.pair);
     let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles, &landmarks));
-    Ok(Case { profiles, standing, question, axes, outputs, echo, file: None, landmarks, doubts })
+    Ok(Case { profiles, setup, question, axes, outputs, echo, file: None, landmarks, doubts })
 }
 
 /// Refuses what there is not with a body that varies, of this name.

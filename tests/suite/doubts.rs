@@ -268,7 +268,7 @@ fn real_scenes_that_went_wrong_in_silence_leave_a_doubt() -> Result<()> {
     assert!(found.iter().any(|warning| warning.contains("the wheel's tread is 2")), "{found:?}");
     let swept = text("cross+wing.slcs\"\nalong = 420.0 #", "whl_left_iter288.whl", "yaw = 0.005");
     let case = scene::resolve(&scene::parse(&swept, false)?, &profiles, "swept")?;
-    let wheelrail::case::Place::Wheelset { system, .. } = &case.standing().place else {
+    let wheelrail::case::Arrangement::Wheelset { system, .. } = &case.setup().arrangement else {
         panic!("a wheelset")
     };
     let doubts = SideLandmarks::new(Landmarks::new(&case.profiles().right.pair), None);

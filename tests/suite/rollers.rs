@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde_json::Value;
-use wheelrail::case::Place;
+use wheelrail::case::Arrangement;
 use wheelrail::load::{
     Elastic, HalfSpace, curvatures, curvatures_at, effective_modulus, press_alone, weighted_frame,
 };
@@ -133,7 +133,7 @@ fn first_touch_on_a_roller_rig_agrees_with_contact() {
     assert_eq!(cases.len(), 30);
     for radius in [350.0, 800.0] {
         let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
-        let Place::Wheelset { system, .. } = &case.standing().place else { panic!("a wheelset") };
+        let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
         let mut search = system.search();
         for given in cases.iter().filter(|given| given["roller_radius"] == radius as u64) {
             let position =
@@ -159,7 +159,7 @@ fn forces_on_a_roller_rig_agree_with_contact() {
     let [mut forces, mut references] = [[0.0f64; 2]; 2];
     for radius in [350.0, 800.0] {
         let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
-        let Place::Wheelset { system, .. } = &case.standing().place else { panic!("a wheelset") };
+        let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
         let (mut search, pair) = (system.search(), &case.profiles().right.pair);
         let cases = file["cases"].as_array().unwrap().iter();
         for given in cases.filter(|given| given["roller_radius"] == radius as u64) {
@@ -204,7 +204,7 @@ fn forces_on_a_roller_rig_agree_with_contact() {
 /// Gives the contacts of both sides on a rig at some positions.
 fn found_on_rig(radius: f64) -> Vec<(Contact, Pair)> {
     let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
-    let Place::Wheelset { system, .. } = &case.standing().place else { panic!("a wheelset") };
+    let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
     let (mut search, pair) = (system.search(), &case.profiles().right.pair);
     let mut found = Vec::new();
     for (lateral, yaw) in [(0.0, 0.0), (2.5, 0.01), (-4.0, 0.024), (5.5, -0.004), (6.4, 0.0)] {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rayon::ThreadPoolBuilder;
-use wheelrail::case::{Case, Place, table};
+use wheelrail::case::{Arrangement, Case, table};
 use wheelrail::export::table_wrp;
 use wheelrail::load::{curvatures_at, quadratic_form_at};
 use wheelrail::scene;
@@ -89,7 +89,9 @@ fn found(quantity: &TableQuantity, roll: f64, sides: &[SideTouch<'_>; 2], modulu
 
 /// Compares a table with direct searches, each from an upright wheelset.
 fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
-    let Place::Wheelset { system, position } = &case.standing().place else { panic!("{name}: no wheelset") };
+    let Arrangement::Wheelset { system, position } = &case.setup().arrangement else {
+        panic!("{name}: no wheelset")
+    };
     let (mut search, quantities) = (system.search(), table.quantities());
     let mut values = vec![0.0; quantities.len()];
     let mut shares = vec![0.0_f64; quantities.len()];

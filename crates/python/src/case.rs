@@ -17,7 +17,7 @@ use crate::contact::Contact;
 use crate::errors::{OrRaise, exception, say, warn};
 use crate::files::files;
 use crate::long::{waited, watched};
-use crate::place::Spot;
+use crate::place::PairContact;
 use crate::positions::positions;
 use crate::profile::Profile;
 use crate::sweep::{AskedOfSweep, DrawnPositions, sweep};
@@ -135,7 +135,7 @@ impl Case {
     fn contacts(slf: &Bound<'_, Self>) -> PyResult<Vec<Contact>> {
         let case = &slf.get().inner.case;
         let found = watched(slf.py(), None, |_| case::find(case, case.question().approach))?;
-        let spot = |(k, contact)| Spot::of_case(slf.clone().into_any().unbind(), k, contact);
+        let spot = |(k, contact)| PairContact::of_case(slf.clone().into_any().unbind(), k, contact);
         Ok(found.into_iter().enumerate().map(spot).map(Contact::of).collect())
     }
 
@@ -197,7 +197,7 @@ impl Case {
         let positions = positions(lateral, yaw.or(Some(&own[0])), roll.or(Some(&own[1])))?;
         let question = case.question();
         let asked = AskedOfSweep {
-            within: case.standing().within,
+            within: case.setup().within,
             conicity,
             ellipses: question.approach.map(|by: ApproachBy| (by, question.modulus())),
         };
@@ -337,7 +337,7 @@ impl Case {
 
     /// Gives the wheelset of a case and its position.
     fn wheelset(&self) -> PyResult<(&WheelsetOnTrack, &Position)> {
-        let case::Place::Wheelset { system, position } = &self.inner.case.standing().place else {
+        let case::Arrangement::Wheelset { system, position } = &self.inner.case.setup().arrangement else {
             let expected = "[track] and [wheelset]";
             let error =
                 Error::new("sweep", "a single wheel", expected, "a sweep moves a wheelset over its track");

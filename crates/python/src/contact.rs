@@ -18,7 +18,7 @@ use crate::errors::{OrRaise, exception, warn};
 use crate::filling::{checked_axes, fill, named_method};
 use crate::long::detached;
 use crate::patch::Patch;
-use crate::place::{ContactOrigin, FoundAt, Spot, joined};
+use crate::place::{ContactOrigin, FoundAt, PairContact, joined};
 use crate::profile::Profile;
 use crate::values::{made, mesh, vectors};
 
@@ -35,7 +35,7 @@ use crate::values::{made, mesh, vectors};
 ///     (11, 17)
 #[pyclass(frozen, module = "wheelrail")]
 pub(crate) struct Contact {
-    spot: Spot,
+    spot: PairContact,
 }
 
 /// An array (n,).
@@ -45,7 +45,7 @@ type AxisArray<'py> = Bound<'py, PyArray1<f64>>;
 type NormalArrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
 
 impl Contact {
-    pub(crate) fn of(spot: Spot) -> Self {
+    pub(crate) fn of(spot: PairContact) -> Self {
         Self { spot }
     }
 
@@ -451,7 +451,7 @@ pub(crate) fn contact_from_parts(
     let pair = joined(rail.profile, wheel.profile, radius, roller).or_raise()?;
     if let Some([rail_x, wheel_x, skew]) = chosen {
         let placement = pair.placed(rail_x, wheel_x, skew).or_raise()?;
-        return Ok(Contact::of(Spot::chosen(placement, [rail_x, wheel_x, skew])));
+        return Ok(Contact::of(PairContact::chosen(placement, [rail_x, wheel_x, skew])));
     }
     let known = |name: &str| ["left", "right", "single"].into_iter().find(|known| *known == name);
     let parts = place.and_then(|(side, number)| Some(FoundAt { side: known(&side)?, number })).zip(found);
@@ -459,7 +459,7 @@ pub(crate) fn contact_from_parts(
         let expected = "the parts of a pickled contact of this version";
         return Err(exception(Error::new("contact", "other parts", expected, "pickle it anew")));
     };
-    Ok(Contact::of(Spot::found(&pair, postcard::from_bytes(found).map_err(lost)?, place)))
+    Ok(Contact::of(PairContact::found(&pair, postcard::from_bytes(found).map_err(lost)?, place)))
 }
 
 fn lost(error: postcard::Error) -> PyErr {

@@ -11,7 +11,7 @@ use wheelrail::search::{self, ONE_CONTACT, Pose, ProfilePair, Selection, TrackSi
 
 use crate::contact::Contact;
 use crate::errors::{OrRaise, exception, warn};
-use crate::place::{FoundAt, Spot, joined};
+use crate::place::{FoundAt, PairContact, joined};
 use crate::profile::Profile;
 use crate::values::made;
 
@@ -124,7 +124,7 @@ impl Pair {
         let placement = self.pair.placed(rail_x, wheel_x, skew).or_raise()?;
         let of_points = usual::tilt("placed", &placement).into_iter().chain(usual::angle("skew", skew));
         warn(py, of_points.chain(usual::standing(self.landmarks.on(TrackSide::Right), &placement, 0.0)))?;
-        Ok(Contact::of(Spot::chosen(placement, [rail_x, wheel_x, skew])))
+        Ok(Contact::of(PairContact::chosen(placement, [rail_x, wheel_x, skew])))
     }
 
     pub(crate) fn __repr__(&self) -> String {
@@ -172,7 +172,7 @@ impl Pair {
     /// Numbers the contacts of a side.
     pub(crate) fn contacts(&self, side: &'static str, found: &[search::Contact]) -> Vec<Contact> {
         let contact =
-            |(k, found)| Contact::of(Spot::found(&self.pair, found, FoundAt { side, number: k + 1 }));
+            |(k, found)| Contact::of(PairContact::found(&self.pair, found, FoundAt { side, number: k + 1 }));
         found.iter().copied().enumerate().map(contact).collect()
     }
 

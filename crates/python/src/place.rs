@@ -11,7 +11,7 @@ use crate::errors::{OrRaise, exception};
 
 /// A place of contact of a pair.
 #[derive(Clone)]
-pub(crate) struct Spot {
+pub(crate) struct PairContact {
     /// What messages call it.
     pub(crate) name: String,
     /// Side and number of a contact that was found.
@@ -47,7 +47,7 @@ pub(crate) struct FoundAt {
     pub(crate) number: usize,
 }
 
-impl Spot {
+impl PairContact {
     pub(crate) fn found(pair: &wheelrail::Pair, found: search::Contact, place: FoundAt) -> Self {
         Self {
             name: format!("{} {}", place.side, place.number),

@@ -16,7 +16,7 @@ use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use crate::range::range;
 use positions::read_positions;
 use table::SweepTable;
-use wheelrail::case::{Case, PATCHES_FOLDER, Place, ascending};
+use wheelrail::case::{Arrangement, Case, PATCHES_FOLDER, ascending};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile};
 use wheelrail::scene::{self, Scene};
@@ -128,7 +128,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     }
     let asked = case.question();
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
-    let selection = Selection { within: case.standing().within, apart: ONE_CONTACT };
+    let selection = Selection { within: case.setup().within, apart: ONE_CONTACT };
     let profiles = case.profiles();
     let drawn = [("--picture", outputs.picture.is_some()), ("--html", outputs.html.is_some())];
     let drawn = drawn.into_iter().find_map(|(option, given)| given.then_some(option));
@@ -174,7 +174,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
 
 /// Returns the wheelset and track of a case, and the position in the case.
 fn wheelset(case: &Case) -> Result<(&Arc<WheelsetOnTrack>, Position)> {
-    let Place::Wheelset { system, position } = &case.standing().place else {
+    let Arrangement::Wheelset { system, position } = &case.setup().arrangement else {
         let expected = "[track] and [wheelset]";
         return Err(Error::new("", "a single wheel", expected, "a sweep moves a wheelset over its track"));
     };

@@ -10,7 +10,7 @@ use super::super::png::png;
 use super::super::progress::Progress;
 use super::table::SweepTable;
 use crate::answer::{complain, counted};
-use wheelrail::case::{self, Case, Place, Run, SILENT, Standing};
+use wheelrail::case::{self, Arrangement, Case, Run, SILENT, Setup};
 use wheelrail::error::{Error, ErrorKind, Result, in_order};
 use wheelrail::export::collection_pvd;
 use wheelrail::files::Folder;
@@ -74,11 +74,10 @@ fn patch(
     name: &str,
 ) -> Result<WrittenPosition> {
     let position = *position;
-    let place = Place::Wheelset { system: Arc::clone(table.system), position };
-    let roll_by_load = case.standing().roll_by_load;
-    let standing =
-        Standing { place, within: table.selection.within, roll_by_load, ..case.standing().clone() };
-    let here = case.at(standing, scene::echo(&scene.at(&position), name)).as_one_of_many();
+    let arrangement = Arrangement::Wheelset { system: Arc::clone(table.system), position };
+    let roll_by_load = case.setup().roll_by_load;
+    let setup = Setup { arrangement, within: table.selection.within, roll_by_load, ..case.setup().clone() };
+    let here = case.at(setup, scene::echo(&scene.at(&position), name)).as_one_of_many();
     let run = match Run::new(here, SILENT) {
         Err(error) if error.kind == ErrorKind::NoContact => {
             return Ok(WrittenPosition { position, folders: Vec::new() });

@@ -6,7 +6,7 @@ use nalgebra::UnitComplex;
 
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use super::side_data::{DeviationData, SideData};
-use crate::case::{Place, Profiles, SideProfiles, Standing};
+use crate::case::{Arrangement, Profiles, Setup, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::lofted::LoftedBody;
 use crate::measured::Unit;
@@ -23,8 +23,8 @@ const GAUGE_HEIGHT: f64 = 14.0;
 ///
 /// # Errors
 /// None or several of the ways to say so; missing or contradictory keys; profiles that cannot be searched.
-pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standing, Profiles)> {
-    let standing = match (&scene.contact, &scene.track, &scene.wheelset) {
+pub(super) fn setup(scene: &Scene, mut profiles: Profiles) -> Result<(Setup, Profiles)> {
+    let setup = match (&scene.contact, &scene.track, &scene.wheelset) {
         (Some(contact), None, None) => {
             for (side, data) in [("left", &scene.left), ("right", &scene.right)] {
                 if data.is_some() {
@@ -49,7 +49,7 @@ pub(super) fn standing(scene: &Scene, mut profiles: Profiles) -> Result<(Standin
             Err(Error::new("", found, expected, "keep one placement, with all it needs"))
         }
     };
-    Ok((standing?, profiles))
+    Ok((setup?, profiles))
 }
 
 fn on_track(
@@ -57,7 +57,7 @@ fn on_track(
     track: &TrackData,
     wheelset: &WheelsetData,
     profiles: &mut Profiles,
-) -> Result<Standing> {
+) -> Result<Setup> {
     let position = position(wheelset)?;
     let (rails, wheels, within) = (rails(track)?, wheels(wheelset)?, within(wheelset.within)?);
     let deviation = |side: &Option<SideData>| side.as_ref().and_then(|side| side.deviation);
@@ -98,8 +98,8 @@ fn on_track(
             "give one, or another roll",
         ));
     }
-    Ok(Standing {
-        place: Place::Wheelset { system: Arc::new(system), position },
+    Ok(Setup {
+        arrangement: Arrangement::Wheelset { system: Arc::new(system), position },
         within,
         roll_by_load,
         along: along.unwrap_or(0.0),
@@ -148,18 +148,14 @@ fn side(
     profiles.on_track(track, axle)
 }
 
-fn single(
-    contact: &ContactData,
-    profiles: &SideProfiles,
-    [along, pitch]: [Option<f64>; 2],
-) -> Result<Standing> {
+fn single(contact: &ContactData, profiles: &SideProfiles, [along, pitch]: [Option<f64>; 2]) -> Result<Setup> {
     let in_table = |error: Error| error.within("contact");
     let SideProfiles { pair, varying, .. } = profiles;
     let side = varying.as_ref().map(LoftedBody::side);
     without_effect(["contact: along", ALONG], along, side == Some(Side::Rail))?;
     without_effect(["contact: pitch", PITCH], pitch, side == Some(Side::Wheel))?;
     let within = within(contact.within).map_err(in_table)?;
-    let place = match (contact.rail_x, contact.wheel_x, contact.offset) {
+    let arrangement = match (contact.rail_x, contact.wheel_x, contact.offset) {
         (Some(_), ..) if side.is_some() => {
             let body = side.map_or("", LoftedBody::name);
             let expected = format!("`offset` with perhaps `roll` and `yaw`, with {body}");
@@ -171,7 +167,7 @@ fn single(
             ));
         }
         (Some(rail_x), Some(wheel_x), None) if contact.roll.is_none() && contact.yaw.is_none() => {
-            Place::Points {
+            Arrangement::Points {
                 rail_x: finite("rail_x", rail_x).map_err(in_table)?,
                 wheel_x: finite("wheel_x", wheel_x).map_err(in_table)?,
             }
@@ -180,8 +176,10 @@ fn single(
             let pose = Pose::new(offset, contact.yaw.unwrap_or(0.0), contact.roll.unwrap_or(0.0));
             let pose = pose.map_err(in_table)?;
             match varying {
-                Some(body) => Place::OnSlices { pose, pair: Arc::new(LoftedPair::of_pair(pair, body)?) },
-                None => Place::Wheel { pose, profiles: Arc::new(ProfilePair::new(pair)?) },
+                Some(body) => {
+                    Arrangement::OnSlices { pose, pair: Arc::new(LoftedPair::of_pair(pair, body)?) }
+                }
+                None => Arrangement::Wheel { pose, profiles: Arc::new(ProfilePair::new(pair)?) },
             }
         }
         _ => {
@@ -196,8 +194,8 @@ fn single(
             return Err(Error::new("contact", found, expected, "keep one of the two forms"));
         }
     };
-    Ok(Standing {
-        place,
+    Ok(Setup {
+        arrangement,
         within,
         roll_by_load: false,
         along: along.unwrap_or(0.0),
