@@ -42,8 +42,8 @@ impl EtaAxis {
         &self.eta
     }
 
-    /// Returns two ranges of indices whose u lies in (u0, u1], or in \[u0, u1\] for u0 = 0: the first for η ≥ 0, the second
-    /// for η < 0. On a symmetric axis the second range is empty, because the values are mirrored.
+    /// Returns two ranges of indices whose u \[mm²\] lies in an interval, without its lower end unless that is 0: the first for
+    /// η ≥ 0, the second for η < 0. On a symmetric axis the second range is empty, because the values are mirrored.
     pub(crate) fn ranges(&self, u: Interval) -> [Range<usize>; 2] {
         let right = &self.u[self.first_positive..];
         let ends = u.ends().map(|end| right.partition_point(|&u| u <= end));
@@ -83,7 +83,7 @@ impl EtaAxis {
         self.u[..self.first_positive].partition_point(|&value| value > u)
     }
 
-    /// Returns the second range of [`Self::ranges`].
+    /// Returns the indices of the η < 0 whose u \[mm²\] lies in an interval, without its lower end unless that is 0.
     fn negative(&self, Interval { low: u0, high: u1 }: Interval) -> Range<usize> {
         let left = &self.u[..self.first_positive];
         let end = if u0 == 0.0 { left.len() } else { left.partition_point(|&u| u > u0) };

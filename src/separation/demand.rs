@@ -19,7 +19,7 @@ pub const FULL_PRECISION: f64 = 1e-12;
 /// Relative truncation error that is allowed at full precision: a fiftieth of the promised 1e-13, a few roundings.
 const FULL_RELATIVE: f64 = 2e-15;
 
-/// The accuracy demanded of s: |error| ≤ `absolute`, and |error| ≤ `relative` × |(u − u_0) q|.
+/// The accuracy demanded of s: |error| ≤ `absolute`, and |error| ≤ `relative` × the wheel's rise above the beginning of the span.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// Largest absolute error of s \[mm\], such as 1e-12.

@@ -19,15 +19,15 @@ pub struct Normals {
     pub wheel: Option<Unit<Vector3<f64>>>,
 }
 
-/// The gap at one place, with what leads from there to the place where it has a given value.
+/// The gap at one place, its slopes, and the profiles' points from which the surfaces there are swept.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GapSlopes {
     /// The gap \[mm\].
     pub(crate) gap: f64,
     /// Its slopes along ξ, or σ, and η.
     pub(crate) slopes: [f64; 2],
-    /// Abscissae in the contact frame \[mm\] of the points of both profiles that lie there, the wheel's first. NaN for a body that varies,
-    /// and for an extruded rail.
+    /// Abscissae in the contact frame \[mm\] of these points of both profiles, the wheel's first. NaN for a body that varies, and for
+    /// an extruded rail.
     pub(crate) abscissae: [f64; 2],
 }
 
@@ -77,7 +77,7 @@ impl<'a> Upper<'a> {
         }
     }
 
-    /// Height \[mm\], and the sum of the magnitudes of its terms; NaN where there is none.
+    /// Computes the height and the sum of the magnitudes of its terms \[mm\]; NaN off the wheel and off the profile below it.
     fn height_and_size(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         match self {
             Self::Round(relief) => relief.height_and_size(xi, eta),
@@ -95,7 +95,8 @@ impl<'a> Upper<'a> {
         }
     }
 
-    /// Height \[mm\], abscissa of the profile's point \[mm\], NaN of a wheel that varies, and the wheel's outward unit normal.
+    /// Computes the height \[mm\], the abscissa of the profile's point \[mm\] (NaN for a wheel that varies), and the wheel's outward
+    /// unit normal. `None` off the wheel; the height is NaN off the profile below it.
     fn height_and_normal(&mut self, xi: f64, eta: f64) -> Option<(f64, f64, Unit<Vector3<f64>>)> {
         match self {
             Self::Round(relief) => {
@@ -150,12 +151,14 @@ impl<'a> Evaluator<'a> {
         self.lower.as_mut().map_or(above, |lower| above + lower.height(xi, eta))
     }
 
-    /// Computes s \[mm\] and its gradient [∂s/∂ξ, ∂s/∂η] at (ξ, η); one call costs less than two. NaN off either body.
+    /// Computes s \[mm\] and its gradient [∂s/∂ξ, ∂s/∂η] at (ξ, η); one call costs less than two. s and ∂s/∂ξ are NaN off either
+    /// body; ∂s/∂η is a number where only an extruded rail is missing.
     pub fn separation_and_gradient(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {
         self.gap_and_slopes(xi, eta).map_or((f64::NAN, [f64::NAN; 2]), |at| (at.gap, at.slopes))
     }
 
-    /// Computes s, its gradient and the abscissae of the points over (ξ, η); `None` off either body.
+    /// Computes s, its gradient and the abscissae of the profiles' points at (ξ, η). Off either body the result is `None`, or s and
+    /// ∂s/∂ξ are NaN.
     pub(crate) fn gap_and_slopes(&mut self, xi: f64, eta: f64) -> Option<GapSlopes> {
         let (s, abscissa, normal) = self.upper.height_and_normal(xi, eta)?;
         let ([along, across], alone) = (slopes(normal), [abscissa, f64::NAN]);
@@ -190,7 +193,7 @@ impl<'a> Evaluator<'a> {
         self.lower.is_some()
     }
 
-    /// Computes ζ(ξ, η) \[mm\] of the lower body; NaN off it. A rail's is [`Self::rail_height`] at every η.
+    /// Computes ζ(ξ, η) \[mm\] of the lower body; NaN off it. For an extruded rail it is [`Self::rail_height`] at every η.
     pub fn lower_height(&mut self, xi: f64, eta: f64) -> f64 {
         if let Some(feet) = &mut self.feet {
             return feet.height(xi, eta);
@@ -232,7 +235,7 @@ impl<'a> Evaluator<'a> {
         self.placement.rail().section.branch_at(xi).map_or(f64::NAN, |branch| branch.chord_slope(xi, xi))
     }
 
-    /// Computes ζ(ξ) of the lower body's profile \[mm\], which is that of a rail at every η; NaN off it.
+    /// Computes ζ(ξ) of the lower body's profile \[mm\], the height of an extruded rail at every η; NaN off it.
     pub fn rail_height(&self, xi: f64) -> f64 {
         self.placement.rail().section.height(xi)
     }
@@ -243,13 +246,14 @@ impl<'a> Evaluator<'a> {
         self.add_lower(xi, eta, out);
     }
 
-    /// Does what [`Self::column`] does, the wheel 16 points at once. Each point is as accurate.
+    /// Computes s \[mm\] at all η \[mm\] of one column, the wheel 16 points at once, as accurately as [`Self::column`]; NaN where a
+    /// body has no surface.
     pub(crate) fn column_in_lanes(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         self.upper.column_in_lanes(xi, eta, out);
         self.add_lower(xi, eta, out);
     }
 
-    /// Adds how far the lower body lies below what the wheel's height is over.
+    /// Adds how far the lower body lies below its extruded profile (a roller), or below the tangent plane (a rail that varies).
     fn add_lower(&mut self, xi: f64, eta: &[f64], out: &mut [f64]) {
         if let Some(feet) = &mut self.feet {
             feet.forget();

@@ -90,7 +90,7 @@ fn curvature_difference(wheel_radius: f64, rail_radius: f64) -> f64 {
 }
 
 /// Computes ζ^W(ξ + `shift`) − ζ^R(ξ) \[mm\] for a skewed wheel over both contact segments. It is the gap at ξ plus the
-/// wheel's rise from there; neither cancels.
+/// wheel's rise from there; neither cancels. If the wheel's segment does not hold ξ, it is the plain difference.
 pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> f64 {
     if !wheel.xi.contains(xi) {
         return wheel.height(xi + shift) - rail.height(xi);
@@ -98,7 +98,7 @@ pub(super) fn skewed_gap(rail: &Branch, wheel: &Branch, xi: f64, shift: f64) -> 
     contact_gap(rail, wheel, xi, wheel.height(xi)) + shift * wheel.chord_slope(xi, xi + shift)
 }
 
-/// Returns κ_W − κ_R \[1/mm\] of two contact arcs; `None` if one of them is a polynomial.
+/// Returns κ_W − κ_R \[1/mm\] of two contact arcs; `None` if a body touches with a kink or a polynomial.
 pub(super) fn relative_curvature(placement: &Placement) -> Option<f64> {
     let arc = |section: &Section| match &section.branches[section.contact?].shape {
         BranchShape::Arc(arc) => Some(arc.radius),

@@ -96,9 +96,10 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Writes s \[mm\] over the grid, at index i_ξ · n_η + i_η; NaN where a body has no surface. Returns the largest
-    /// truncation error \[mm\] that was measured meanwhile; 0 if none is measured. A method without an error measure of its own
-    /// is compared with single points if a body ends or the wheel steps within the grid.
+    /// Writes s \[mm\] over the grid, at index i_ξ · n_η + i_η; NaN where a body has no surface, and everywhere if
+    /// [`Method::missing`] names a feature. Returns the largest truncation error \[mm\] that was measured meanwhile; 0 if none is
+    /// measured. A method without an error measure of its own is compared with single points if a body ends or the wheel steps
+    /// within the grid.
     ///
     /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits. It is fastest if `out`
     /// is [`super::values::Values`].
@@ -201,7 +202,7 @@ impl Kernel for OverLoft<'_> {
         let eta = &self.axis.eta;
         self.wheel.columns(xi, out);
         for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(eta.len())) {
-            // Of its own for every column, so that any number of threads gives the same bits.
+            // Every column begins with feet of its own, so that any number of threads gives the same bits.
             let mut feet = Feet::new(self.rail);
             out.iter_mut().zip(eta).for_each(|(s, &eta)| *s -= feet.height(xi, eta));
         }

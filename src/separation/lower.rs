@@ -1,4 +1,4 @@
-//! The lower body under a grid: what files of s need besides s to stand in space.
+//! The lower body under a grid: the heights and normals by which files place s in space.
 
 use rayon::prelude::*;
 
@@ -10,9 +10,10 @@ use crate::profile::Station;
 /// The lower body under a grid, in the contact frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowerBody {
-    /// ζ^R(ξ) \[mm\] at η = 0 for each ξ, NaN where the rail has no surface; of a rail that varies along the track 0 there.
+    /// ζ^R(ξ) \[mm\] at η = 0 for each ξ; NaN where a rail or roller has no surface, 0 where a rail that varies along the track has none.
     pub height: Vec<f64>,
-    /// Outward (upward) unit normal (n_ξ, n_ζ) at η = 0 for each ξ, NaN where the rail has no surface.
+    /// Components (n_ξ, n_ζ) of the outward (upward) unit normal at η = 0 for each ξ; NaN where a rail or roller has no surface, (0, 1)
+    /// where a rail that varies along the track has none.
     pub normal: Vec<[f64; 2]>,
     /// Its surface over the whole grid; `None` for an extruded rail, where η changes nothing.
     pub surface: Option<LowerSurface>,
@@ -22,20 +23,21 @@ pub struct LowerBody {
 /// `i_xi * n_eta + i_eta`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LowerSurface {
-    /// How far it lies below the height at η = 0 along ζ \[mm\]; NaN where it has no surface.
+    /// How far it lies below [`LowerBody::height`] along ζ \[mm\]; NaN where it has no surface.
     pub fall: Vec<f64>,
     /// Outward (upward) unit normals (ξ, η, ζ); NaN where it has no surface.
     pub normal: Vec<[f64; 3]>,
 }
 
-/// Where a lower body has no surface: its fall and its normal.
+/// Fall and normal where a lower body has no surface.
 const NO_SURFACE: (f64, [f64; 3]) = (f64::NAN, [f64::NAN; 3]);
 
 impl LowerBody {
-    /// Computes the lower body of a placed pair under the grid of these ξ and η \[mm\]. Accuracy: that of [`Evaluator::lower_height`].
+    /// Computes the lower body of a placed pair under the grid of these ξ and η \[mm\]. Accuracy: that of
+    /// [`Evaluator::separation`] beyond the contact segments.
     pub fn under(placement: &Placement, xi: &[f64], eta: &[f64]) -> Self {
         let (height, normal): (Vec<f64>, Vec<[f64; 2]>) = if placement.lofted_rail().is_some() {
-            // Along η = 0, and where it has no surface there from the tangent plane.
+            // Where the rail has no surface at η = 0, the tangent plane takes its place.
             let mut bodies = Evaluator::new(placement);
             let column = |&xi: &f64| {
                 let normal = bodies.normals(xi, 0.0).rail.map_or([0.0, 1.0], |normal| [normal.x, normal.z]);

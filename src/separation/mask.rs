@@ -1,4 +1,4 @@
-//! Where the bodies have a surface over a grid: every method says alike.
+//! Marks the points of a grid where a body has no surface, the same points for every method.
 
 use super::axis::EtaAxis;
 use super::evaluator::Evaluator;
@@ -14,12 +14,12 @@ use crate::profile::Section;
 /// bulges towards the axle between the ends.
 const NEAREST_TO_AXLE: f64 = 0.5;
 
-/// Returns whether both bodies have a surface over the whole grid, without a step of the wheel's. No point then needs a mask.
+/// Returns whether both bodies have a surface over the whole grid and the wheel's has no step there. No point then needs a mask.
 ///
-/// It is decided from the extents of the profiles and the largest sagitta of the grid, so that a grid that ends close to the
-/// end of a profile may count as not covered.
+/// It is decided from the extents of the profiles and the largest sagitta of the grid. A grid that ends close to the end of a
+/// profile may therefore count as not covered, and with a body that varies no grid counts as covered.
 pub fn covered(placement: &Placement, xi: &[f64], axis: &EtaAxis) -> bool {
-    // Nobody knows beforehand where a rail that varies has a surface.
+    // Where a body that varies has a surface is not known beforehand.
     placement.lofted().is_none() && Relief::all(placement).all(|relief| covers(&relief, xi, axis))
 }
 

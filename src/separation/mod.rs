@@ -1,6 +1,6 @@
 //! INSEP (Report Sec. 6): the separation s(ξ, η) = ζ^W − ζ^R and the unit normals.
 //!
-//! | Equation | File |
+//! | What | File |
 //! |---|---|
 //! | the wheel in sagitta form, u = e (2w + e) | `wheel_surface`, over one branch `span` |
 //! | g(ξ), the midplane gap | `gap` |
@@ -10,6 +10,7 @@
 //! | where the bodies have a surface | `mask` |
 //! | s(ξ, ·) as polynomials in η² or η, many columns at once | `columns` |
 //! | s over a grid, and the cheapest method for it | `grid`: [`Method`], [`Choice`]; `plan`: [`Plan`] |
+//! | heights and normals of the lower body under a grid | `lower`: [`LowerBody`] |
 //! | the midplane table, MIDSEP (Sec. 5) | `midplane`: [`midplane_table`] |
 
 mod axis;

@@ -31,7 +31,7 @@ const SKEWED_ETA: usize = 5;
 /// Number of values along each axis at which the quadratic form is tried first: the ends and the middle.
 const PROBED: usize = 3;
 
-/// Number of values along each axis at which sizes are probed where a body has no surface at some of those.
+/// Number of values along each axis that are probed next if a body has no surface at some of the first ones.
 const PROBED_BESIDE_ENDS: usize = 24;
 
 /// Factor on the largest sampled error, for the places between the samples.
@@ -68,7 +68,8 @@ impl Plan {
 
 /// Finds the cheapest method whose estimated error over the grid is below `tolerance` \[mm\], or plans the `forced` one.
 ///
-/// The candidates are the quadratic form and spectral columns. The methods between them on the ladder have larger errors
+/// The candidates are the quadratic form and spectral columns; under a wheel that varies around its axle, single points take the
+/// place of spectral columns. The methods between them on the ladder have larger errors
 /// than spectral columns and take no less time, because every column (under a skewed wheel every point) needs a gap of its
 /// own. At [`FULL_PRECISION`] and below, the quadratic form is chosen only if it is exact to rounding.
 ///
@@ -247,7 +248,7 @@ fn alone(strips: &[Strip], xi: &[f64]) -> Vec<f64> {
     alone
 }
 
-/// Errors at a few places of the grid: the ends and the middle of both axes.
+/// Errors at a few places of the grid, evenly spread over both axes.
 struct Probe {
     /// Largest error of the quadratic form \[mm\].
     quadratic: f64,
@@ -270,7 +271,7 @@ impl Probe {
                     quadratic = nan_max(quadratic, difference(&[form], &[exact]));
                 }
             }
-            // The form has a value everywhere.
+            // NaN: a body has no surface at one of these places, or touches with a kink.
             if !quadratic.is_nan() {
                 break;
             }

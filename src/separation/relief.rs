@@ -11,7 +11,7 @@ use crate::profile::Section;
 
 /// The height ζ(ξ, η) − h(ξ) of a wheel over the profile h below it. It holds the memory for the spans of one column.
 ///
-/// On a rail it is the separation. On a roller the separation is the sum of two reliefs: that of the wheel over the roller's
+/// On an extruded rail it is the separation. On a roller the separation is the sum of two reliefs: that of the wheel over the roller's
 /// profile, and that of this profile over the roller, which upside down is a wheel as well.
 #[derive(Debug, Clone)]
 pub struct Relief<'a> {
@@ -43,17 +43,18 @@ pub struct ReliefPoint {
 }
 
 impl<'a> Relief<'a> {
-    /// Makes the reliefs of a placed pair: that of the wheel over the lower profile, and that of the profile over a roller. The
-    /// separation is their sum. A wheel that varies around its axle has none.
+    /// Makes the reliefs of a placed pair: that of the wheel over the lower profile, and that of the profile over a roller. On swept
+    /// bodies the separation is their sum. A wheel that varies around its axle has none.
     pub fn all(placement: &'a Placement) -> impl Iterator<Item = Self> {
         let round = Some(placement).filter(|placement| placement.lofted_wheel().is_none());
         round.into_iter().chain(placement.under()).map(Self::new)
     }
 
-    /// Makes the relief of the wheel of a placed pair over the profile of its rail.
+    /// Makes the relief of the wheel of a placed pair over the profile of its rail or roller; over the tangent plane of a rail that
+    /// varies.
     pub fn new(placement: &'a Placement) -> Self {
         Self {
-            // Of a rail that varies, the height over its tangent plane is known apart.
+            // The height of a rail that varies over its tangent plane is computed elsewhere.
             below: placement.lofted_rail().map_or(&placement.rail().section, FramedLoft::plane),
             wheel: WheelSurface::new(placement),
             spans: Vec::with_capacity(4),
@@ -104,7 +105,7 @@ impl<'a> Relief<'a> {
         gap::midplane_gap_of(self.below, self.wheel.section, xi)
     }
 
-    /// Returns the abscissa \[mm\] of the profile's point from which a point of the surface is turned.
+    /// Returns the abscissa \[mm\] of the profile's point whose circle about the axle holds a point of the surface.
     pub fn abscissa(&self, point: &ReliefPoint) -> f64 {
         self.wheel.abscissa(point.xi_w, point.point.e)
     }
@@ -148,7 +149,7 @@ impl<'a> Relief<'a> {
         }
     }
 
-    /// Computes ζ of the surface above its value at the beginning of a span \[mm\]; NaN if u lies beyond it.
+    /// Computes ζ of the surface above its value at the beginning of a span \[mm\]; NaN if η is beyond the surface.
     fn rise(&self, xi_w: f64, span: &Span, u: f64) -> f64 {
         self.wheel.point_at(xi_w, span, u).map_or(f64::NAN, |point| point.rise)
     }

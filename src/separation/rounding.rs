@@ -21,10 +21,10 @@ const STEEP: f64 = 1.0;
 /// Estimates the largest rounding error of a relief \[mm\] over a grid. `largest` \[mm\] bounds the sum of the magnitudes of the
 /// terms of s.
 ///
-/// The estimate is a few units of the last place of that sum. Beyond the contact segments three terms are added. The first
-/// is the rounding of the heights by which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
-/// The second is the error of the angle θ_C (the rounding of its sine over its cosine) times the distance from C. The third
-/// is the rounding of ξ and of the run to an arc's centre, times the slope.
+/// The estimate is a few units of the last place of that sum. Beyond the contact segments two terms are added for each body. The
+/// first is the rounding of the heights by which joints are placed in the frame, ζ = Δz cosθ − Δx sinθ, with z_C rounded in Δz.
+/// The second is the larger of two: the error of the angle θ_C (the rounding of its sine over its cosine) times the distance from
+/// C; and the rounding of ξ and of the run to an arc's centre, times the slope.
 pub fn rounding(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis, largest: f64) -> f64 {
     let bodies = [CoveredPart::below(relief, xi), CoveredPart::above(relief, xi, axis)];
     let of_sum = OWN_ROUNDINGS[usize::from(relief.is_skewed())] * f64::EPSILON * largest;
@@ -47,7 +47,7 @@ impl CoveredPart {
         Self::new(relief.below, xi, &[0.0], |xi, _| xi)
     }
 
-    /// Finds the part of the surface. Away from the midplane, columns lie over other places of its profile.
+    /// Finds the part of the wheel's profile. Away from the midplane, columns lie over other places of it.
     fn above(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> Self {
         let wheel = &relief.wheel;
         let below = |xi: f64, eta: f64| {
@@ -119,7 +119,8 @@ fn run_to_centre(branch: &Branch, slope: f64) -> f64 {
     }
 }
 
-/// Finds the abscissa inside a piece that is nearest to one end of the piece. The abscissae of the columns ascend.
+/// Finds the abscissa of a column inside a piece that is nearest to one end of the piece; `None` if no column lies over the
+/// piece. The abscissae of the columns ascend.
 fn nearest(piece: &Piece, end: usize, xi: &[f64], abscissa: impl Fn(f64) -> f64) -> Option<f64> {
     let index = if end == 0 {
         xi.partition_point(|&xi| abscissa(xi) < piece.xi.low)

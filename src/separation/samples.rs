@@ -14,8 +14,8 @@ const SAMPLED_COLUMNS: usize = 65;
 /// Least number of η that are compared in these columns.
 const SAMPLED_ETA: usize = 9;
 
-/// Number of points up to which all points of a grid are compared. Between the columns of a larger one a step or kink may cross a
-/// single point.
+/// Number of points up to which all points of a grid are compared, because a step or kink may affect a single point. A larger
+/// grid is compared at about so many points or more.
 const SAMPLED_POINTS: usize = 4096;
 
 /// Values at single points of a few columns.

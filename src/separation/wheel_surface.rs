@@ -211,8 +211,8 @@ impl<'a> WheelSurface<'a> {
         [e, e * (2.0 * w + e)]
     }
 
-    /// Returns the sagitta \[mm\] between `from`, which is next to a wall of the profile, and `to` at which a column over a branch
-    /// folds: on the side of the wall u falls as the sagitta grows, and the surface faces away. Returns `None` if u grows at `from`.
+    /// Finds the sagitta \[mm\] at which a column over a branch folds, between `from`, which is next to a wall of the profile, and
+    /// `to`. From the wall to the fold u falls as the sagitta grows, and the surface faces away. Returns `None` if u grows at `from`.
     fn fold(&self, xi: f64, branch: &Branch, from: f64, to: f64) -> Option<f64> {
         // du/de halved: w + e (1 + dw/de), where dw/de = −cosθ dζ/de.
         let growth = |e: f64| {
@@ -229,7 +229,7 @@ impl<'a> WheelSurface<'a> {
         self.axle - xi * self.sin - height * self.cos
     }
 
-    /// Finds the point with sagitta e \[mm\] over a span, without iteration.
+    /// Finds the point with sagitta e \[mm\] over a span: on an arc or line without iteration, on a polynomial by Newton's steps.
     #[inline]
     pub fn point(&self, xi: f64, span: &Span, e: f64) -> SagittaPoint {
         let nowhere = SagittaPoint { e, rise: f64::NAN, w: f64::NAN, u: f64::NAN };

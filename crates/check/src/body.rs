@@ -11,8 +11,8 @@ const CELLS_PER_SCALE: f64 = 8.0;
 const LEAST_CELLS: usize = 2;
 /// Fewest cells of the coarse mesh around the axle, or along the rail.
 const CELLS_AROUND: usize = 12;
-/// Longest of these cells \[mm\]. On a wheel of 460 mm its sagitta is 0.07 mm: with a deeper one the closest place on the coarse
-/// mesh may belong to another part of the profile than the closest one of the body.
+/// Longest cell of the coarse mesh around the axle, or along the rail \[mm\]. On a wheel of 460 mm its sagitta is 0.07 mm: with a
+/// larger one, the closest points of mesh and body may lie on different parts of the profile.
 const LONGEST_CELL: f64 = 16.0;
 
 /// Distance from a segment's end, as a share of the body's size, within which the neighbour counts as well. It covers the
@@ -27,7 +27,8 @@ const NEARBY_CELLS: f64 = 2.0;
 /// cannot be distinguished.
 pub(super) const STEEPEST: f64 = 0.02;
 
-/// Distance \[mm\] by which another head stands in front of the sheet through C at least: the program then takes the latter.
+/// Least distance \[mm\] by which another head, such as a guard rail, stands in front of the sheet through C. The program then
+/// takes the sheet through C.
 pub(super) const FLANGEWAY: f64 = 10.0;
 
 /// A body with its coarse mesh, which has only triangles that face the other body.
@@ -49,15 +50,15 @@ pub(super) enum AlongZeta {
     Heights(Vec<Height>),
     /// There is no surface.
     Nothing,
-    /// The sheet is steeper than [`STEEPEST`], or ends here.
+    /// A sheet is steeper than [`STEEPEST`].
     Steep,
     /// The foot on a sheet could not be located.
     Unresolved,
 }
 
 impl Solid {
-    /// Returns the number of cells of the coarse mesh up to this distance from the origin \[mm\]; infinite or NaN for what is
-    /// not finite.
+    /// Returns the number of cells of the coarse mesh up to this distance from the origin \[mm\]; infinite or NaN if surface or
+    /// distance is not finite.
     pub fn cells(surface: &SampledSurface, reach: f64) -> f64 {
         let along = surface.curves.iter().map(along).sum::<f64>();
         along * around(surface.v_reach(reach))
@@ -90,7 +91,7 @@ impl Solid {
         self.met(xi, eta, origin)
     }
 
-    /// Returns the heights that the line through (ξ, η) meets first from a flangeway behind `zeta` \[mm\] on.
+    /// Returns the heights that the line through (ξ, η) meets first at [`FLANGEWAY`] or more behind `zeta` \[mm\].
     pub fn behind(&self, xi: f64, eta: f64, zeta: f64) -> AlongZeta {
         let wheel = self.surface.is_wheel();
         let from = if wheel { zeta + FLANGEWAY } else { zeta - FLANGEWAY };
@@ -131,7 +132,7 @@ impl Solid {
         }
     }
 
-    /// Returns the outermost of the heights, with all others that end at a joint there.
+    /// Returns the heights from the outermost one inwards, up to the first that is not at a joint.
     fn outermost(&self, mut found: Vec<Height>) -> Vec<Height> {
         let sign = if self.surface.is_wheel() { 1.0 } else { -1.0 };
         found.sort_by(|a, b| (sign * a.zeta).total_cmp(&(sign * b.zeta)));
@@ -142,7 +143,7 @@ impl Solid {
         found
     }
 
-    /// Returns guesses on every curve, for lines that miss the coarse mesh near a silhouette or an end.
+    /// Returns both ends of every curve: guesses for lines that miss the coarse mesh near a silhouette or an end.
     fn all_ends(&self, eta: f64) -> Vec<ParameterPoint> {
         let curves = self.surface.curves.iter().enumerate();
         curves.flat_map(|(curve, c)| [0.0, c.length].map(|t| ParameterPoint { curve, t, v: eta })).collect()
@@ -211,7 +212,7 @@ impl Solid {
             || (place.curve == last && place.t >= self.surface.curves[last].length - slack)
     }
 
-    /// Returns the places on the coarse mesh, and on the curves around, that are closest to `point`.
+    /// Returns the place of the coarse mesh that is closest to `point`, and the near ends of the curves around it.
     pub fn near(&self, point: Vector) -> Vec<ParameterPoint> {
         let Some(mesh) = &self.mesh else { return Vec::new() };
         let place = self.own_place(mesh.closest_to(point));

@@ -1,4 +1,4 @@
-//! Finds the points closest to each other, of a point and a body and of two bodies, with parry on meshes that shrink around
+//! Finds the point of a body closest to a point, and the closest points of two bodies, with parry on meshes that shrink around
 //! them.
 
 use super::body::{Solid, spread};
@@ -15,7 +15,7 @@ const CELLS: usize = 4;
 /// Factor from the cells of one mesh to those of the next. The place found on one mesh is then well inside the next one.
 const CLOSER: f64 = 0.125;
 
-/// Most meshes on the way in, moves sideways included.
+/// Most meshes of a search, sideways moves included.
 const MOST_MESHES: usize = 200;
 
 /// Last cell of the pair search, as a share of the local scale: GJK handles pairs of triangles, and its own
@@ -32,7 +32,7 @@ pub(super) struct Closest {
     pub place: ParameterPoint,
     /// Coordinates of the point \[mm\].
     pub point: Vector,
-    /// Distance of the point \[mm\].
+    /// Distance of this point from the other one \[mm\].
     pub distance: f64,
     /// Rigorous bound of the distance's error from the last mesh's chords \[mm\].
     pub error: f64,

@@ -42,7 +42,7 @@ const CONTACT_STEPS: usize = 12;
 /// Lift of the wheel for closest distances, as a share of R, on top of the approach.
 const LIFT: f64 = 1e-4;
 
-/// Most cells of the coarse mesh of a body: some 700 MB for three.
+/// Most cells of the coarse mesh of a body: about 700 MB for rail, wheel and lifted wheel.
 const MOST_CELLS: f64 = 1e5;
 
 /// Checks the answers of `answer` for s and normals at (ξ, η) of a placed pair.
@@ -99,8 +99,8 @@ pub fn check(
     Ok(report)
 }
 
-/// Returns the sharpest radius of both profiles \[mm\], at most an eighth of the wheel's: the radius of the
-/// closed forms.
+/// Returns the smallest radius of the arcs of both profiles \[mm\], at most an eighth of the rolling radius: the radius
+/// of the closed forms.
 pub(super) fn smallest_radius(placement: &Placement) -> f64 {
     let segments =
         [placement.rail(), placement.wheel()].into_iter().flat_map(|body| body.profile().segments());

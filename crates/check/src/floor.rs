@@ -31,7 +31,7 @@ pub struct Floor {
 const SLOPE: f64 = 0.375;
 /// Distance of the contact from the middle of the arcs, as a share of the radius.
 const OFFSET: f64 = 0.3125;
-/// Half width of the arcs, as a share of the radius.
+/// Half width of arcs and lines, as a share of the radius.
 const WIDTH: f64 = 0.9;
 
 /// Rays along each side: n × n rays on each form.
@@ -39,7 +39,7 @@ const RAYS: i32 = 4;
 /// Distance of the outermost rays to either side, as a share of the radius.
 const REACH: f64 = 0.4;
 
-/// Measures the floors on the four forms, at the scene's own size: radius r of the arcs, R of the wheel
+/// Measures the checker's errors on the four forms, at the scene's own size: radius r of the arcs, R of the wheel
 /// \[mm\].
 ///
 /// # Errors
@@ -115,7 +115,7 @@ impl Implicit {
         let along = two(point.x, cos) - two(point.z, sin) + x;
         let up = two(point.x, sin) + two(point.z, cos) + z;
         let w = self.axle.map(|r| -up + r);
-        // Height of the meridian's point that makes this point of the surface.
+        // Height at which the point crosses the meridian plane when it is turned about the axle.
         let meridian = match (self.axle, w) {
             (Some(r), Some(w)) => -(w * w + two(point.y, point.y)).sqrt() + r,
             _ => up,

@@ -1,9 +1,9 @@
 //! The independent check: wheel and rail as triangle meshes, measured by parry3d.
 //!
 //! No measured quantity comes from the separation code. Points of the meshes come from the profiles' own
-//! parametrisation, turned about the axle and moved along the rail (`sampler`). Rays along ζ give s (`ray`),
-//! closest points give distances (`closest`). The error of all this is first measured on closed forms
-//! (`floor`).
+//! parametrisation, turned about an axle or moved along the rail (`sampler`), or from the strips of a body that varies
+//! (`lofted`). Rays along ζ give s (`ray`), closest points give distances (`closest`). The checker's own error is first
+//! measured on closed forms (`floor`).
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 

@@ -2,7 +2,8 @@
 //! measured by rays along ζ.
 //!
 //! The meshes of the body that varies are made of points of its strips. The frame of a rail is set up here from the angles of the contact;
-//! a wheel is wrapped around its axle here, and has the program's frame, whose normal is checked. A ray meets a coarse mesh first, and then meshes of nine cells around that place, each smaller than the one before.
+//! a wheel is wrapped around its axle here, and has the program's frame. A ray first meets a coarse mesh, and then meshes of nine cells
+//! around that place, each smaller than the one before.
 
 use std::fmt;
 use std::time::Instant;
@@ -22,28 +23,28 @@ use super::report::Differences;
 use super::request::{Answer, Request};
 use super::sampler::SampledSurface;
 
-/// Numbers of lines of points in ξ and η, with the edges of the window; a prime to the cells, so that few lie on their sides.
+/// Numbers of lines of points in ξ and η, with the edges of the window.
 const GRID: [usize; 2] = [17, 13];
 
-/// Cells of the coarse mesh: one across, and this many mm along the track or around the wheel.
+/// Longest cell of the coarse mesh along the track or around the wheel \[mm\]; across, its cells are those of the strip.
 const ALONG: f64 = 1.0;
 
 /// Margin of the coarse mesh around the window \[mm\].
 const MARGIN: f64 = 2.0;
 
-/// Most points of the coarse mesh.
+/// Most points of the coarse mesh of a strip.
 const MOST_POINTS: usize = 2_000_000;
 
 /// First and last cell of the meshes around a place, as a share of a coarse one. The last chords are off by less than 1e-12 mm.
 const CELLS: [f64; 2] = [0.5, 1e-5];
 
-/// Factor from one of these meshes to the next.
+/// Factor from the cells of one mesh around a place to those of the next.
 const CLOSER: f64 = 0.125;
 
 /// Cell whose diagonals give the normal, as a share of a coarse one.
 const NORMAL_CELL: f64 = 1.0 / 64.0;
 
-/// Distance from a point \[mm\] within which a ray meets the sheet that it is said to be on: beyond what a coarse mesh is off.
+/// Distance \[mm\] in front of a point from which the ray to its sheet starts: more than the error of a coarse mesh.
 const NEAR: f64 = 0.5;
 
 /// Largest difference that counts as agreement, as a multiple of the checker's own estimate.
@@ -52,12 +53,12 @@ const SAFETY: f64 = 4.0;
 /// Rounding of a height, per millimetre of the largest coordinate.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// What rays on meshes found of a contact with a body that varies.
+/// Results of rays on meshes for a contact with a body that varies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoftedReport {
     /// Whether all values agree.
     pub agrees: bool,
-    /// Numbers of rays.
+    /// Number of rays.
     pub points: usize,
     /// Points where neither program nor meshes have both surfaces.
     pub no_surface: usize,
@@ -103,8 +104,8 @@ impl fmt::Display for LoftedReport {
     }
 }
 
-/// Checks the separation of a contact with a body that varies, the normals of that body, and points (ξ, η, ζ) \[mm\] at which lines along
-/// the rail's normals end on it.
+/// Checks the separation of a contact with a body that varies, the normals of that body, and the points (ξ, η, ζ) \[mm\] of that body
+/// where lines along the rail's normals end.
 ///
 /// Cost: about a second.
 ///
@@ -276,8 +277,8 @@ impl<'a> MeshedLoft<'a> {
         if self.lofted.side() == Side::Rail { other - own } else { own - other }
     }
 
-    /// Measures the sheet that a line meets first from the other body; where that is so much nearer than the program's answer that it may
-    /// be another head, the one behind.
+    /// Measures the sheet that a line from the other body meets first; or the sheet a flangeway behind it, where the separation differs
+    /// from the program's by more than half a flangeway, as the first sheet may then be that of another head.
     fn met(&self, at: [f64; 2], found: Answer, other: &Solid) -> RayHit {
         let rail = self.lofted.side() == Side::Rail;
         let first = self.ray(at, if rail { RayOrigin::Above } else { RayOrigin::Below });

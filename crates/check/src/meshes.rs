@@ -1,7 +1,7 @@
 //! The one module that uses parry3d: triangle meshes, rays along ζ, closest points.
 //!
 //! It uses parry's f64 build: f32 has 5e-5 mm of noise at the axle's distance, and its distance between triangles was found
-//! to return a false 0. For meshes with NaN parry returns nonsense (distance 0), so that no such mesh is ever built.
+//! to return a false 0. For meshes with NaN parry returns a distance of 0; [`Mesh::new`] refuses them.
 
 use parry3d_f64::math::Pose;
 use parry3d_f64::query::details::local_ray_intersection_with_triangle;
@@ -47,9 +47,9 @@ impl Mesh {
         TriMesh::new(vertices, triangles).ok().map(Self)
     }
 
-    /// Returns the first triangle that the line (ξ, η) meets from the origin; `None` beside the mesh.
+    /// Returns where the ray through (ξ, η) along ζ first meets the mesh; `None` if it misses the mesh.
     ///
-    /// The ray starts close to the mesh's box, so that its length costs no digits.
+    /// Rays from below or above start close to the mesh's box: a longer ray would lose digits.
     pub fn along_zeta(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<Hit> {
         let bounds = self.0.local_aabb();
         let margin = bounds.extents().max_element();

@@ -26,7 +26,7 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 /// Largest sine of the angle between the line of the normal gap and the wheel's normal at which both count as one direction.
 const ONE_DIRECTION: f64 = 0.05;
 
-/// Places of a polynomial at which its curvature is looked at.
+/// Number of places of a polynomial at which its curvature is evaluated.
 const SAMPLES: usize = 9;
 
 /// A point of the rail with its normal gap.
@@ -72,14 +72,14 @@ impl NormalGapSample {
 pub struct NormalGapReport {
     /// Number of points that were compared.
     pub points: usize,
-    /// Largest closest distance less |t|, beyond what both may err by \[mm\]; not above 0 where all is well.
+    /// Largest value \[mm\] of the closest distance less |t| less the allowed error; at most 0 if t agrees.
     pub beyond_mm: f64,
-    /// Where that is: (σ, η) \[mm\].
+    /// Point (σ, η) \[mm\] of `beyond_mm`.
     pub at_mm: [f64; 2],
     /// Number of points at which both normals are one line.
     pub aligned: usize,
-    /// Largest distance of the closest one from \[|t| cosβ − bend, |t|\] there, beyond what both may err by \[mm\]; β is the angle
-    /// of the two normals.
+    /// Largest amount \[mm\] by which the closest distance of such a point is outside \[|t| cosβ − bend, |t|\], less the allowed error;
+    /// β is the angle between the two normals.
     pub aligned_mm: f64,
     /// Whether t agrees everywhere.
     pub agrees: bool,
@@ -153,8 +153,8 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         }
         let (t, sine) = (sample.gap.abs(), sample.rail_normal.cross(&sample.wheel_normal).norm());
         if sine < ONE_DIRECTION {
-            // Of a tangent plane at the angle β the closest point is t cosβ away; the wheel bends from it by at most its sharpest
-            // radius. The line is a normal of the rail.
+            // A tangent plane inclined by β is t cosβ away; the wheel departs from it by at most t² sin²β over its smallest radius.
+            // Measured from the wheel, t itself is the closest distance, since the line is a normal of the rail.
             let bend = t * sine * t * sine / sharpest;
             let expected = match from {
                 Side::Rail => [t * (1.0 - sine * sine).sqrt() - bend, t],

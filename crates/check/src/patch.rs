@@ -25,7 +25,7 @@ pub(super) struct ParameterPoint {
 }
 
 impl CurveMesh {
-    /// Makes the patch over t × v; `None` if a point is not finite.
+    /// Makes the mesh over t × v; `None` if a point is not finite.
     pub fn new(surface: &SampledSurface, curve: usize, t: Vec<f64>, v: Vec<f64>) -> Option<Self> {
         let vertices: Vec<Vector> =
             t.iter().flat_map(|&t| v.iter().map(move |&v| surface.point(curve, t, v))).collect();
@@ -50,7 +50,7 @@ impl CurveMesh {
     }
 }
 
-/// Returns the parameters of a hit on the cells over two ascending lists of them.
+/// Returns the parameters of a hit on the cells over two ascending lists of parameters.
 pub(super) fn parameters([t, v]: [&[f64]; 2], hit: &Hit) -> [f64; 2] {
     let columns = v.len() - 1;
     let (cell, second) = (hit.triangle / 2, hit.triangle % 2);

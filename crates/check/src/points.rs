@@ -35,7 +35,7 @@ pub(super) fn spread_points(
 
 /// Returns the deepest midplane point, the tips, and points of the boundary s = δ as the program finds them.
 ///
-/// Slices are enough. If the wheel is yawed, loops with their areas cost far more than the whole check.
+/// Slices are enough: under yaw, the closed loops of the boundary cost far more than the whole check.
 fn boundary(placement: &Placement, request: &Request) -> Vec<[f64; 2]> {
     let Some(overlap) = placement.overlap() else { return Vec::new() };
     let over = request.window.xi.cut(overlap);

@@ -23,7 +23,7 @@ const REFINEMENTS: i32 = 3;
 /// rounding, and the cell itself still has seven digits.
 const BRACKET_CELL: f64 = 1e-6;
 
-/// Position of the ray inside its cell: off the diagonal and off every symmetry, where the error has no h².
+/// Position of the ray inside its cell: off the diagonal and off symmetric places, where the error may have no h² term.
 const INSIDE: [f64; 2] = [0.375, 0.25];
 
 /// Most Newton steps for the foot's parameters; five are enough on any sheet that is not vertical.
@@ -48,7 +48,8 @@ pub(super) struct Height {
     pub normal_error: f64,
 }
 
-/// Returns the foot on one curve or its continuation: solves (ξ, η) of X(t, v) by Newton steps from a guess.
+/// Returns the foot of (ξ, η) on one curve's surface or its continuation, by Newton steps in (t, v) from a guess; `None` if they
+/// do not converge.
 pub(super) fn foot(
     surface: &SampledSurface,
     guess: ParameterPoint,
@@ -113,7 +114,7 @@ pub(super) fn height(surface: &SampledSurface, place: ParameterPoint, xi: f64, e
     })
 }
 
-/// Returns the rounding of a height \[mm\]: that of coordinates as large as the profile, over a slope.
+/// Returns the rounding of a height \[mm\]: that of the largest coordinates, divided by the normal's ζ component.
 fn rounding(surface: &SampledSurface, normal_zeta: f64) -> f64 {
     f64::EPSILON * surface.size / normal_zeta
 }

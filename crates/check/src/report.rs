@@ -84,7 +84,7 @@ pub struct Counts {
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// Whether all values agree to the floor.
+    /// Whether all values agree: there is no objection.
     pub agrees: bool,
     /// The objections; empty if all values agree.
     pub objections: Vec<String>,
@@ -104,8 +104,8 @@ pub struct Report {
     pub orders: Orders,
     /// Differences |n − n by meshes| of both bodies' unit normals.
     pub normals: Differences,
-    /// Distance of C from the profiles \[mm\] and angle between the frame's ξ axis and their tangents
-    /// \[rad\].
+    /// Distance of C from the profiles \[mm\] and angle between the frame's ξ axis and their tangents \[rad\]; `None` if C is
+    /// not the frame's origin.
     pub contact_point: Option<[f64; 2]>,
     /// The text [`RELATION`](super::RELATION).
     pub relation: &'static str,

@@ -1,6 +1,6 @@
 //! Samples points of both bodies from the profiles' own parametrisation. Nothing here uses the separation code.
 //!
-//! Points of a curve come from turning its start station (arcs, lines) or from its parameter (polynomials).
+//! Points of a curve come from its start station and curvature (arcs, lines) or from its coefficients (polynomials).
 //! The rail is the curve moved along y; wheel and roller are the curve turned about their axle. All coordinates are
 //! measured from the contact point, so that the axle's distance costs no digits.
 
@@ -16,9 +16,9 @@ pub(super) struct SampledCurve {
     shape: SampledForm,
     /// Largest parameter: \[mm\] along arcs and lines, else in the polynomial's own unit.
     pub length: f64,
-    /// Range of the parameter over which the curve turns or stretches by about one: a radius, or its length.
+    /// Range of the parameter over which the curve turns by about 1 rad: a radius, or the length of a line.
     pub scale: f64,
-    /// Bound of the arc length \[mm\].
+    /// Upper bound of the arc length \[mm\].
     pub longest: f64,
 }
 
@@ -28,15 +28,16 @@ enum SampledForm {
         start: Station,
         curvature: f64,
     },
-    /// With the coefficients of (x − x_C, z − z_C) about the beginning of the range, whose terms may be much larger than their sum.
+    /// With the coefficients of (x − x_C, z − z_C) about the beginning of the range; in double-double, as terms may be much
+    /// larger than their sum.
     Polynomial {
         polynomial: Polynomial,
         local: [Vec<Twice>; 2],
     },
 }
 
-/// Returns coefficients of a polynomial, given to twice the working precision, about another beginning, less a value: no digit
-/// is lost to the size of that value.
+/// Returns the coefficients of a polynomial about the parameter `begin`, with `less` subtracted from the first. Coefficients are
+/// double-double, so that the difference keeps its digits.
 fn about(c: &[[f64; 2]], begin: f64, less: f64) -> Vec<Twice> {
     let mut local = recentred(&exact(c), begin.into());
     if let Some(first) = local.first_mut() {
@@ -50,7 +51,7 @@ fn exact(c: &[[f64; 2]]) -> Vec<Twice> {
 }
 
 impl SampledCurve {
-    /// Makes the curve of a segment, seen from `origin`; `longest` bounds the scale \[mm\].
+    /// Makes the curve of a segment, relative to `origin`; `longest` bounds the scale of an arc or line \[mm\].
     pub fn of_segment(segment: &Segment, origin: [f64; 2], longest: f64) -> Self {
         match &segment.shape {
             Shape::Arc(arc) => {
@@ -75,8 +76,8 @@ impl SampledCurve {
         Self { shape: SampledForm::Turning { start, curvature }, length, scale, longest: length }
     }
 
-    /// Sets the scale to the smaller of the parameter range and the sharpest of nine radii, in units of the
-    /// parameter.
+    /// Sets the scale to the smaller of the parameter range and the smallest of nine radii of curvature, in units of
+    /// the parameter, and sets the bound of the arc length.
     fn with_scale_of_polynomial(mut self, polynomial: &Polynomial) -> Self {
         let range = polynomial.range();
         for k in 0..=8 {
@@ -118,15 +119,15 @@ impl SampledCurve {
         }
     }
 
-    /// Returns the parameter of the sample nearest to the contact point.
+    /// Returns the parameter of that of 65 samples which is nearest to the contact point.
     pub fn nearest_to_origin(&self) -> f64 {
         let distance = |t: f64| self.point(t).into_iter().fold(0.0, f64::hypot);
         let samples = (0..=64).map(|k| self.length * f64::from(k) / 64.0);
         samples.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0.0)
     }
 
-    /// Returns the length per unit of the parameter, by a central difference; it is used only for sizes of
-    /// cells.
+    /// Returns the arc length per unit of the parameter, by a central difference with eight correct digits or more: for
+    /// sizes of cells, steps and bounds, not for measured values.
     pub fn speed(&self, t: f64) -> f64 {
         let h = self.scale * f64::EPSILON.cbrt();
         let ([x0, z0], [x1, z1]) = (self.point(t - h), self.point(t + h));
@@ -155,8 +156,8 @@ impl SampledCurve {
     }
 }
 
-/// One body's surface over the contact frame, by (curve, t, v); v is the length along y or around the wheel
-/// at the distance of C from the axle \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
+/// One body's surface in the contact frame, with parameters (curve, t, v); v is the length along y, or around the axle
+/// at the distance of C from it \[mm\]. ∂X/∂t × ∂X/∂v points up where the surface faces the other body.
 #[derive(Debug, Clone)]
 pub(super) struct SampledSurface {
     /// The curves, in order of the chain.
@@ -169,11 +170,11 @@ pub(super) struct SampledSurface {
     turned: Option<AboutAxle>,
     /// Lift along ζ \[mm\].
     lift: f64,
-    /// Largest coordinate that was rounded on the way \[mm\].
+    /// Size of the coordinates \[mm\], to which the rounding of a point is proportional.
     pub size: f64,
 }
 
-/// A turn about an axle.
+/// The axle about which a curve is turned.
 #[derive(Debug, Clone, Copy)]
 struct AboutAxle {
     /// Height of the axle over C \[mm\], negative for a roller's.
@@ -243,7 +244,8 @@ impl SampledSurface {
         ]
     }
 
-    /// Returns the length over which v turns the surface: the axle distance; for the rail, which does not turn, any length.
+    /// Returns the length \[mm\] of v over which the surface turns by 1 rad: the distance of C from the axle; for an
+    /// extruded rail, which does not turn, its size.
     pub fn round_scale(&self) -> f64 {
         self.turned.map_or(self.size, |turned| turned.axle.abs())
     }
@@ -283,9 +285,8 @@ impl SampledSurface {
         h * speed * (self.round_scale() / (curve.scale * speed)).sqrt().max(1.0)
     }
 
-    /// Returns a bound \[mm\] of the distance between the surface and a triangle whose legs are a cell (h, k)
-    /// at (t, v), ¼ ‖D²X‖ in units of the cell, and the angle \[rad\] by which the normal can turn over a
-    /// cell.
+    /// Returns a bound \[mm\] of the distance between the surface and a triangle whose legs are the sides (h, k) of a cell
+    /// at t, ¼ ‖D²X‖ in units of the cell, and the angle \[rad\] by which the normal can turn over a cell.
     pub fn chordal_bound(&self, curve: usize, t: f64, [h, k]: [f64; 2]) -> [f64; 2] {
         let reach = 3.0 * h;
         let (bend, speed) = (self.curves[curve].bend(t, reach), self.curves[curve].speed(t));

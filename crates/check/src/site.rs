@@ -14,7 +14,7 @@ use super::normal_gap::{NormalGapReport, NormalGapSample, check_normal_gap};
 use super::report::Report;
 use super::request::{Answer, Request};
 
-/// Points a side at which the normal gap of a grid over the rail's surface is measured.
+/// Most values of σ, and of η, at which the normal gap of a grid over the rail's surface is measured.
 const SAMPLES: usize = 9;
 
 /// The result for a contact of a case.
@@ -48,7 +48,7 @@ impl fmt::Display for SiteReport {
 /// Checks a contact over its own window and approach, without filling its grid.
 ///
 /// # Errors
-/// Those of [`check`].
+/// Those of [`check`] and [`check_normal_gap`]; with a body that varies, a window that is not finite or too wide.
 pub fn check_site(site: &Site) -> Result<SiteReport> {
     let placement = &site.contact.placement;
     let mut evaluator = Evaluator::new(placement);

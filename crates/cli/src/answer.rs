@@ -9,7 +9,7 @@ use wheelrail::{Error, Result};
 pub enum Outcome {
     /// The command did what it was asked to do.
     Done,
-    /// An infeasible contact, an empty patch or a failed check.
+    /// The answer is "no": for example an infeasible contact, an empty patch or a failed check.
     No,
 }
 

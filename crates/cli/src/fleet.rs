@@ -26,7 +26,7 @@ pub(super) struct FleetArguments {
     out: PathBuf,
 }
 
-/// Runs a fleet.
+/// Runs a fleet. The exit code is 1 if no pair has an equivalent conicity.
 ///
 /// # Errors
 /// A wrong scene or list; the disk. What is wrong with a profile is in its row.

@@ -1,5 +1,5 @@
 //! `wheelrail march`: writes the contact geometry of a wheelset at many places along rails that vary, or as wheels that vary turn, and
-//! what happens in between; draws it as a picture and as a page.
+//! the events in between; draws it as a picture and as a page.
 
 use std::path::PathBuf;
 
@@ -88,7 +88,7 @@ impl MarchOutputs {
         })
     }
 
-    /// Puts text into the table, or to stdout. Returns whether anybody still reads.
+    /// Puts text into the table, or to stdout. Returns whether more is wanted: by the reader, the events or what is drawn.
     fn put(&mut self, text: &str) -> Result<bool> {
         match &mut self.table {
             None => Ok(print_to_reader(text)? || self.events.is_some() || self.draws()),
@@ -122,7 +122,7 @@ impl MarchOutputs {
     }
 }
 
-/// What a march has come to.
+/// The state of a march.
 struct Marched {
     outputs: MarchOutputs,
     /// Number of stops, and the distance between those that are drawn.
@@ -133,7 +133,7 @@ struct Marched {
     without: usize,
     /// Stops with a patch that the end of the slices cuts off.
     cut_off: usize,
-    /// The rows of some stops.
+    /// The rows of the stops that were taken last.
     rows: MarchColumns,
     /// The rows of the stops that are drawn, which are numbered among themselves.
     drawn: MarchColumns,

@@ -19,7 +19,7 @@ const TICK: Duration = Duration::from_millis(200);
 /// Steps of a terminal's bar from 0 to 100 %.
 const BAR: u64 = 1000;
 
-/// Where a command is.
+/// The step at which a command is.
 #[derive(Debug, Clone)]
 struct Stage {
     step: String,

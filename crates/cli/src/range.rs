@@ -6,7 +6,7 @@ use wheelrail::error::{Error, Result};
 /// Most positions of one sweep or march. They and their results take a GiB.
 pub(super) const MOST_POSITIONS: usize = 10_000_000;
 
-/// Largest displacement \[mm\]. It is far beyond any track, and its sums do not overflow.
+/// Largest displacement \[mm\] or angle \[rad\]. It is far beyond any track, and its sums do not overflow.
 pub(super) const FARTHEST: f64 = 1e9;
 
 /// Most decimals with which a number is treated as a decimal one. Doubles of a millimetre and more have no more digits.
@@ -25,13 +25,13 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     parts.try_into().ok()
 }
 
-/// Reads FROM:TO:STEP, both ends included. Each position is the double nearest to its decimal number, so that it is printed
-/// as that number.
+/// Reads FROM:TO:STEP in mm: FROM and every step up to TO, which is included if a step ends there. Each position is the
+/// double nearest to its decimal number, so that it is printed as that number.
 pub(super) fn range(option: &str, text: &str) -> Result<Vec<f64>> {
     range_in(("mm", "-8:8:0.1"), option, text)
 }
 
-/// Reads the same in another unit; `example` is what an error advises.
+/// Reads FROM:TO:STEP in `unit`; `example` is what an error advises.
 pub(super) fn range_in((unit, example): (&str, &str), option: &str, text: &str) -> Result<Vec<f64>> {
     let bad = || {
         let expected = format!("FROM:TO:STEP in {unit} with FROM <= TO within ±{FARTHEST:e} and STEP > 0");

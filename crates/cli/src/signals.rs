@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: what a command has not finished leaves the disk, and the exit code is that of shells, 128 + signal: 130
+//! Ctrl-C and SIGTERM: unfinished outputs are removed from the disk, and the exit code is that of shells, 128 + signal: 130
 //! and 143.
 
 use std::sync::Mutex;
@@ -6,7 +6,8 @@ use std::sync::Mutex;
 /// Locked once the program ends because of a signal.
 static ENDING: Mutex<()> = Mutex::new(());
 
-/// Begins to wait for signals. A system that grants no thread for it ends the program at once, and the next run cleans up.
+/// Begins to wait for signals. If the system grants no thread for this, a signal ends the program at once, and the next run
+/// cleans up.
 #[cfg(unix)]
 pub(super) fn watch() {
     use signal_hook::consts::{SIGINT, SIGTERM};
@@ -21,7 +22,7 @@ pub(super) fn watch() {
     drop(std::thread::Builder::new().name("signals".into()).spawn(wait));
 }
 
-/// Other systems have no such signals: the next run cleans up.
+/// Does nothing: on other systems Ctrl-C ends the program at once, and the next run cleans up.
 #[cfg(not(unix))]
 pub(super) fn watch() {}
 

@@ -73,8 +73,8 @@ pub fn compare(
     points.collect()
 }
 
-/// Returns whether (ξ, η) lies over the rail's contact segment, and the wheel's foot below it over the wheel's. The foot is
-/// at ξ′ − e sinθ, with e ≈ η′²/2R.
+/// Returns whether (ξ, η) lies over the contact segments of rail and wheel, and on the wheel's also the profile point that
+/// is turned to (ξ, η). That point is at ξ′ − e sinθ, with e ≈ η′²/2R.
 pub fn over_contact(placement: &Placement, xi: f64, eta: f64) -> bool {
     on_contact(placement, xi, eta, 0.0)
 }

@@ -10,7 +10,7 @@ use wheelrail::patch::Window;
 use wheelrail::placement::Placement;
 use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, Method, plan};
 
-/// The methods that a case is run with, in the order of [`Outcome::errors`](super::hard_run::HardOutcome::errors).
+/// The methods that a case is run with, in the order of [`HardOutcome::errors`](super::hard_run::HardOutcome::errors).
 pub const METHODS: [Method; 3] = [Method::Spectral, Method::Pointwise, Method::ReportNewton];
 
 /// Numbers of columns between those of a case: none, and as many as make strips.
@@ -88,7 +88,7 @@ pub struct StatedPatch {
 pub struct StatedComponent {
     /// Range of ξ \[mm\], 25 digits.
     pub xi: [String; 2],
-    /// What bounds the component at either end: "tip", "window", "profile-end" or "fork".
+    /// What bounds the component at either end: "tip", "window" or "profile-end".
     pub ends: [String; 2],
     /// |∂s/∂ξ| at tips, 25 digits.
     pub slope: [Option<String>; 2],

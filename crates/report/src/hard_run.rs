@@ -11,7 +11,7 @@ use wheelrail::separation::Method;
 pub struct HardOutcome {
     /// The case that was run.
     pub case: HardCase,
-    /// Number of compared points.
+    /// Number of points of the case's file.
     pub points: usize,
     /// Errors for each of [`METHODS`], over the points that have a value where they should.
     pub errors: [Errors; 3],

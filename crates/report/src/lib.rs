@@ -8,8 +8,9 @@
 //! measure them. [`rates`] counts positions of a wheelset a second over them, [`loads`] compares approaches under load with
 //! solved ones, [`whole_case`] times a case from first touch to its mesh, [`conformal`] measures the normal gap,
 //! [`processes`] names the runs of the program that are timed as a whole.
-//! [`measurements`] does all of this with a given effort; [`requirements`] judges the ratios; [`practice`] compares whole cases of engineers with brute force. [`page`]
-//! and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here touches the disk.
+//! [`practice`] compares whole cases of engineers with brute force. [`measurements`] does all of this with a given effort;
+//! [`requirements`] judges the ratios; [`page`] and [`table`] turn the numbers into Markdown, CSV and charts. Nothing here
+//! touches the disk.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 

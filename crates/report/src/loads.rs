@@ -61,7 +61,7 @@ pub struct CarriedRegion {
     /// Placement, patch, normal force and estimate.
     pub site: Site,
     /// What Tamaas finds for the same normal force: δ on cells three times as fine as those of the automatic grid, pressure and area on
-    /// cells nine times as fine. Not numbers if the data have none.
+    /// cells nine times as fine. NaN if the data have none.
     pub solved: Solved,
 }
 
@@ -133,7 +133,7 @@ impl Loaded {
         self.under(pair, &format!("load = {:?}", self.load))
     }
 
-    /// Resolves the case of this position with a patch as the scene's key says.
+    /// Resolves the case of this position; `patch` is the text of the scene's `[patch]`.
     fn under(&self, pair: &Pair, patch: &str) -> Result<Case> {
         let Self { offset, yaw, .. } = self;
         // The profiles named here are not read, because the pair is given.
@@ -157,7 +157,7 @@ impl CarriedRegion {
         self.site.contact.found.as_ref().map_or(1, |found| found.contact)
     }
 
-    /// Gives what the other regions of the wheel lower the surface by \[mm\], which Tamaas does not know.
+    /// Gives the lowering \[mm\] of the surface by the pressures on the wheel's other regions, which Tamaas does not know.
     pub fn lowered(&self) -> f64 {
         self.site.contact.pressures.first().map_or(0.0, |pressures| pressures.lowered)
     }

@@ -22,7 +22,7 @@ pub const SPACINGS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
 /// Standard deviations of the noise across the profile \[µm\]; it is normal and independent from point to
 /// point.
 pub const NOISES: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
-/// Seed of the noise. It is equal for all rows of one body, so that rows differ only by their curves.
+/// Seed of the noise. It is equal for all rows of one body, so that rows of one spacing and noise differ only by their curves.
 const SEED: u64 = 0x60E1_51002;
 
 /// Approach δ of the comparison \[mm\].

@@ -29,8 +29,8 @@ pub const TOLERANCES: [f64; 4] = [1e-3, 1e-6, 1e-9, FULL_PRECISION];
 /// The scene on which growth and threads are measured: a plain tread contact with arcs on both bodies.
 const EXAMPLE: &str = "hollow_tread";
 
-/// Factor by which the contestants of growth run longer. The largest grids take a tenth of a second, and memory is
-/// disturbed most.
+/// Factor by which the contestants of growth run longer. Runs on the largest grids take a tenth of a second, and other
+/// processes disturb them most, as they wait for memory.
 const GROWTH_SHARES: f64 = 4.0;
 
 /// Number of passes over the races of the scenes. A disturbance of the machine may last for seconds.
@@ -121,7 +121,7 @@ pub struct Threads {
     pub method: Method,
     /// Number of points of the grid.
     pub points: usize,
-    /// Best time on the wall on one and on two threads \[s\].
+    /// Best wall-clock time on one and on two threads \[s\].
     pub seconds: [f64; 2],
     /// Whether both gave the same bits.
     pub same_bits: bool,

@@ -8,7 +8,7 @@ pub struct Process {
     pub name: &'static str,
     /// The scene, as TOML.
     pub scene: &'static str,
-    /// Largest time on the wall \[s\].
+    /// Largest wall-clock time \[s\].
     pub bound: f64,
 }
 
@@ -35,6 +35,6 @@ pub const PROCESSES: [Process; 2] = [
 pub struct ProcessCost {
     /// The process.
     pub process: Process,
-    /// Shortest time on the wall \[s\], from the start of the process to its end, on all threads.
+    /// Shortest wall-clock time \[s\], from the start of the process to its end, on all threads.
     pub seconds: f64,
 }

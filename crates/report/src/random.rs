@@ -1,4 +1,4 @@
-//! Random numbers from a seed. They are equal on every machine and in every run.
+//! Random numbers from a seed: the same in every run. Uniform ones are equal on every machine, normal ones but for rounding.
 
 /// A stream of random numbers by SplitMix64; normal ones are made by Box–Muller.
 #[derive(Debug, Clone)]

@@ -167,10 +167,10 @@ fn swept(system: &WheelsetOnTrack, motion: Freedoms, extent: &Extent, row: &mut 
     Ok(())
 }
 
-/// Sweeps a drawn or a worn, smoothed pair of 548 points through as many positions, one after the other.
+/// Sweeps a drawn pair, or a worn and smoothed one of some 500 points, through `positions` positions, one after the other.
 ///
 /// # Errors
-/// As [`rates`].
+/// The errors of [`rates`].
 pub fn sweep(measured: bool, motion: Freedoms, positions: usize) -> Result<()> {
     let [spacing, noise] = INSTRUMENTS[0];
     let pair = if measured { worn(spacing, noise, CurveKind::Smoothing)?.1 } else { drawn()? };

@@ -152,7 +152,7 @@ impl ReferenceScene {
         })
     }
 
-    /// Returns the largest radius of either profile \[mm\]: the scale of absolute bounds.
+    /// Returns the largest radius of an arc of either profile \[mm\], 0 without arcs: the scale of absolute bounds.
     pub fn largest_radius(&self) -> f64 {
         let radius = |segment: &ReferenceSegment| match segment {
             ReferenceSegment::Arc { r, .. } => *r,

@@ -7,20 +7,20 @@ use super::rates::{Freedoms, Rate};
 use super::spline_cost::SplineCost;
 use wheelrail::separation::{FULL_PRECISION, Method};
 
-/// Least rate of spectral columns at full precision over the Report's Newton.
+/// Least ratio of the rate of spectral columns at full precision to that of the Report's Newton iteration.
 const OVER_REPORT: f64 = 20.0;
-/// Least rate of spectral columns at full precision over a plain store of the same array.
+/// Least ratio of the rate of spectral columns at full precision to that of a plain store of the same array.
 const OVER_STORE: f64 = 0.5;
-/// Least rate on two threads over that on one.
+/// Least ratio of the rate on two threads to that on one.
 const TWO_THREADS: f64 = 1.6;
-/// Largest time of a grid over measured profiles over that over chains of arcs.
+/// Largest ratio of the time of a grid over splines to that over chains of arcs.
 const SPLINES_OVER_ARCS: f64 = 2.0;
 /// Largest time of a point of a splined grid, with its plan \[ns\].
 const SPLINED_POINT: f64 = 6.0;
 /// Least positions a second on one core, as (motion, of drawn arcs, of measured pairs).
 const RATES: [(Freedoms, f64, f64); 3] =
     [(Freedoms::Lateral, 1e6, 2e4), (Freedoms::Rolling, 2e5, 1e4), (Freedoms::Yawing, 1e5, 5e3)];
-/// Largest rate of drawn arcs over that of a measured pair.
+/// Largest ratio of the rate of drawn arcs to that of a measured pair.
 const DRAWN_OVER_MEASURED: f64 = 3.0;
 /// Largest time of the table of conicity to ±10 mm of a measured pair \[s\].
 const CONICITY_TABLE: f64 = 0.2;
@@ -29,7 +29,7 @@ const RUN: f64 = 0.1;
 /// Largest time of a whole case, by pair \[s\].
 const WHOLE_CASES: [(&str, f64); 4] =
     [("drawn", 6e-5), ("measured", 1.5e-4), ("drawn, yawed", 5e-4), ("measured, yawed", 1.5e-3)];
-/// Largest time that a load takes more than an approach \[s\], by number of regions.
+/// Largest extra time of a load, compared with the approach that it causes \[s\], by number of regions.
 const LOADS: [(usize, f64); 2] = [(1, 1e-3), (2, 3e-3)];
 /// Largest time of parts of a whole case, by pair \[s\].
 const CASE_PARTS: [(&str, &str, f64); 6] = [
@@ -40,11 +40,11 @@ const CASE_PARTS: [(&str, &str, f64); 6] = [
     ("drawn, yawed", "patch", 3e-4),
     ("measured, yawed", "patch", 1e-3),
 ];
-/// Largest time of a plan over that of the fill.
+/// Largest ratio of the time of a plan to that of the fill.
 const PLAN_OVER_FILL: f64 = 2.0;
-/// Largest time of a grid of the normal gap over that of s.
+/// Largest ratio of the time of a grid of the normal gap to that of a grid of s.
 const NORMAL_GAP_OVER_S: f64 = 3.0;
-/// Number n of the n × n grid on which that counts.
+/// Number n of the n × n grid on which the normal gap is judged.
 const NORMAL_GAP_SIDE: usize = 200;
 /// Largest distance of d log time/d log points from 1 at which growth counts as linear. It is a factor of 1.6 over four
 /// decades.
@@ -160,7 +160,7 @@ fn whole_cases(m: &Measurements) -> Vec<Requirement> {
     out
 }
 
-/// Judges what a load takes more than the approach that it causes.
+/// Judges the extra time of a load, compared with the approach that it causes.
 fn load(cost: &LoadCost) -> Option<Requirement> {
     let (regions, bound) = LOADS.into_iter().find(|(regions, _)| *regions == cost.regions)?;
     let what = format!("load over approach, {regions} region{}, s", if regions == 1 { "" } else { "s" });
@@ -168,7 +168,7 @@ fn load(cost: &LoadCost) -> Option<Requirement> {
     Some(at_most(what, bound, cost.load - cost.approach, remark))
 }
 
-/// Judges a point of a splined grid; the slowest grid decides.
+/// Judges the time per point of a splined grid; the slowest grid decides.
 fn splined_points(m: &Measurements) -> Option<Requirement> {
     let worst = m.splines.iter().max_by(|a, b| a.nanoseconds().total_cmp(&b.nanoseconds()))?;
     let remark = format!("points every {} mm, {1} × {1}", worst.spacing, worst.side);

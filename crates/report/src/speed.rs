@@ -15,7 +15,7 @@ pub const LEAST_RUNS: usize = 3;
 /// Length of a run, as a multiple of its contestant's share of time, above which it is not repeated.
 const TOO_LONG: f64 = 10.0;
 
-/// Longest run \[s\] that is timed on the wall, where the shortest of many runs is undisturbed. The clock of a thread's
+/// Longest run \[s\] that is timed by the wall clock: the shortest of many such runs is undisturbed. The clock of a thread's
 /// processor time was seen to stand still during one of some million such runs.
 const SHORT: f64 = 1e-3;
 
@@ -36,7 +36,7 @@ pub enum TimedWork {
 /// The times of one contestant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
-    /// Time of the shortest run \[s\]: [`RaceTrack::timed`] on one thread, time on the wall on several.
+    /// Time of the shortest run \[s\]: [`RaceTrack::timed`] on one thread, wall-clock time on several.
     pub best: f64,
     /// Sum of the times of all runs \[s\].
     pub spent: f64,
@@ -109,8 +109,8 @@ impl<'a> RaceTrack<'a> {
     }
 }
 
-/// Returns the time of some work \[s\]: processor time, which leaves out what other processes took, or time
-/// on the wall if the work is short. Call it on a rayon pool of one thread.
+/// Returns the time of some work \[s\]: processor time, which leaves out what other processes took, or wall-clock
+/// time if the work is short. Call it on a rayon pool of one thread.
 pub fn timed(work: impl FnOnce()) -> f64 {
     let (start, on_the_wall) = (processor_time(), Instant::now());
     work();
@@ -124,8 +124,8 @@ fn processor_time() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs. `run` returns the seconds of
-/// one run.
+/// Runs contestants until each has had `seconds`, earlier races included, and `least` runs; fewer if one run takes far more
+/// than `seconds`. `run` returns the seconds of one run.
 ///
 /// The next contestant is the one with the least time so far. All runs are therefore spread over the same stretch of time
 /// and meet the same disturbances, so that ratios hold even if times do not.

@@ -23,7 +23,7 @@ const APPROACH: f64 = 0.05;
 /// points on the edge of a head.
 const EDGE: f64 = 4.0;
 
-/// A placed pair to be checked, with the place of the check.
+/// A placed pair to be checked, with window and approach.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// Name of the scene, or of rail and wheel, with the skew.
@@ -114,7 +114,7 @@ pub fn verify(subjects: &[Subject]) -> Result<Vec<Verified>> {
     subjects.par_iter().map(Subject::verify).collect()
 }
 
-/// Returns the checker's largest floors over several reports, form by form.
+/// Returns the checker's largest errors on closed forms over several reports, form by form.
 pub fn floors<'a>(all: impl Iterator<Item = &'a Verified>) -> Vec<Floor> {
     let mut floors: Vec<Floor> = Vec::new();
     for floor in all.flat_map(|verified| &verified.report.floors) {

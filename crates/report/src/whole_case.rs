@@ -72,8 +72,8 @@ pub const CASES: [&str; 6] = [
     "measured, on a roller, yawed",
 ];
 
-/// Times cases of a centred wheel on its rail, with and without yaw: lowered, placed, with a grid of n × n points at full
-/// precision, the patch in its window and the patch's mesh. Each part runs for at least `seconds`. Call it on
+/// Times cases of a centred wheel on a rail or roller, with and without yaw: lowered, placed, with a grid of n × n points
+/// at full precision, the patch in its window and the patch's mesh. Each part runs for at least `seconds`. Call it on
 /// one thread.
 ///
 /// # Errors

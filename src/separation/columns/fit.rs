@@ -22,7 +22,7 @@ pub struct Fitter<'a> {
     pub neighbours: Neighbours<'a>,
     /// The accuracy that truncation must keep.
     pub demand: Demand,
-    /// Number of coefficients that every column starts with.
+    /// Number of coefficients that a column starts with, if its span is not short.
     pub least: usize,
     /// Coefficients of several columns that were fitted at once.
     pub rows: Vec<Lanes>,
@@ -77,8 +77,8 @@ impl<'a> Fitter<'a> {
     }
 }
 
-/// Appends the coefficients of q over one span in powers of v: at least `least` of them. The columns end at `u_max`
-/// \[mm²\].
+/// Appends the coefficients of q over one span in powers of v: at least `least` of them, or at least two over a short span. The
+/// columns end at `u_max` \[mm²\].
 ///
 /// Returns their number and the largest error \[mm\], measured at the end of the span and between its nodes. Returns `None`
 /// if no degree reaches the demand; the span is then close to a vertical tangent.

@@ -18,7 +18,7 @@ pub struct Neighbours<'a> {
     pub wheel: WheelSurface<'a>,
     /// ξ of the columns \[mm\].
     pub xi: Lanes,
-    /// Whether the columns begin over both contact segments.
+    /// Whether the columns of [`Self::take`] begin over both contact segments; false for those of [`Self::take_each`].
     pub contact: bool,
     /// The spans in order of u.
     pub spans: Vec<SpanColumns<'a>>,

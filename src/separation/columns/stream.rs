@@ -1,11 +1,11 @@
 //! Stores past the caches, for arrays that are larger than the caches.
 //!
 //! An ordinary store first reads the line of memory that it will overwrite. For large arrays that takes most of the time:
-//! 10⁸ points take a third of the time without it (`wheelrail report`, growth of cost).
+//! without this reading, 10⁸ points take a third of it (`wheelrail report`, growth of cost).
 
 use pulp::bytemuck::Pod;
 
-/// Writes vectors of f64. Those that begin at a multiple of 16 bytes are stored past the caches.
+/// Writes vectors of f64. They are stored past the caches if the array begins at a multiple of 16 bytes and a vector holds pairs.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 #[allow(unsafe_code, reason = "no safe store leaves the caches out")]

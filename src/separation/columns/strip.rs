@@ -155,7 +155,7 @@ impl Strip {
             GapStart::Relative => *base = lanes(|k| base[k] * (all[k] * all[k])),
             GapStart::Computed => *base = all.map(|xi| relief.midplane(xi)),
         }
-        // With several spans, q was interpolated in powers of τ and is converted to powers of v.
+        // With several spans, q was interpolated in powers of τ = v/(u_1 − u_0) and is converted to powers of v.
         let mut end = [u_max; MANY];
         for span in spans.iter_mut().rev().filter(|_| self.spans > 1) {
             let shrink: Lanes = lanes(|k| 1.0 / (end[k] - span.u0[k]));

@@ -24,7 +24,8 @@ const MOST_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Places in 0 ≤ τ ≤ 1 at which changes of q are compared with rounding.
 const JUDGED: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 
-/// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. A skewed wheel or a grid of few columns has none.
+/// Makes the strips of a grid up to u = `u_max` \[mm²\], in order of ξ. There are none under a skewed wheel, over
+/// a grid of few columns, and for u_max = 0.
 pub fn strips(fitter: &mut Fitter<'_>, xi: &[f64], u_max: f64) -> Vec<Strip> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
     if fitter.relief.is_skewed() || u_max == 0.0 {

@@ -22,7 +22,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Share of a span at its end, less what rounding may put beyond it.
 const SPAN_END: f64 = 1.0 - 1e-9;
 
-/// Places half way between the nodes of an interval, the last one half way to its middle; and shares of spans, every second one
+/// Places half way between the nodes of an interval, the last one half way to its end; and shares of spans, every second one
 /// by the golden ratio. The others are the end of the span, where the truncation error is largest beside a steep surface.
 static BETWEEN: LazyLock<(Lanes, Lanes)> = LazyLock::new(|| {
     let nodes = &*chebyshev::NODES;
@@ -31,7 +31,7 @@ static BETWEEN: LazyLock<(Lanes, Lanes)> = LazyLock::new(|| {
 });
 
 /// Measures the largest difference \[mm\] of a strip's columns from the same columns fitted directly, up to u = `u_max`
-/// \[mm²\]. The places lie between the strip's nodes in ξ; each has another share of every span.
+/// \[mm²\]. The places lie between the strip's nodes in ξ, at the end of every span and at various shares of it in turn.
 pub fn of_strip(fitter: &mut Fitter<'_>, strip: &Strip, u_max: f64) -> f64 {
     fitter.arch.dispatch(StripDifference { fitter, strip, u_max })
 }

@@ -4,8 +4,8 @@ use crate::separation::axis::EtaAxis;
 use crate::separation::kernel::Kernel;
 use crate::separation::relief::Relief;
 
-/// The parabolas g(ξ) + η²/2R or g(ξ) + q(ξ, 0) η² of a relief. Under skew the wheel's ξ′ and η′ replace ξ and η. A column that
-/// begins beyond the wheel's midplane at η² = u_0 has a parabola from there.
+/// The parabolas g(ξ) + η²/2R or g(ξ) + q(ξ, 0) η² of a relief. Under skew the wheel's ξ′ and η′ replace ξ and η. The parabola of
+/// a column without a surface at η = 0 begins at η² = u_0, where the surface begins.
 #[derive(Debug)]
 pub struct Parabolic<'a> {
     arch: pulp::Arch,

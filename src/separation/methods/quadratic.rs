@@ -6,8 +6,8 @@ use crate::separation::axis::EtaAxis;
 use crate::separation::gap;
 use crate::separation::kernel::Kernel;
 
-/// The quadratic form s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ² + ½ κ_ρ η², with κ_η = cosθ/(R − z_C), and κ_ρ likewise of a roller;
-/// κ_ρ = 0 of a rail.
+/// The quadratic form s ≈ ½ κ_W ξ′² + ½ κ_η η′² − ½ κ_R ξ² + ½ κ_ρ η², with κ_η = cosθ/(R − z_C). κ_ρ is cosθ over the distance of
+/// C from a roller's axle, and 0 for a rail. A body that varies has the second derivatives of its surface in place of its terms.
 #[derive(Debug)]
 pub struct Quadratic<'a> {
     arch: pulp::Arch,
@@ -25,7 +25,8 @@ impl<'a> Quadratic<'a> {
 
 /// Computes the coefficients of ξ², ξη and η² \[1/mm\] in the second-order expansion of s at C.
 ///
-/// At a joint the curvatures are those of the contact segments. The result is NaN if a body touches with a kink.
+/// At a joint the curvatures are those of the contact segments. The result is NaN if a body touches with a kink, or if the surface
+/// of a body that varies has no second derivatives at C.
 pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     if !(placement.rail().is_smooth() && placement.wheel().is_smooth()) {
         return [f64::NAN; 3];
@@ -49,8 +50,8 @@ pub fn quadratic_form(placement: &Placement) -> [f64; 3] {
     }
 }
 
-/// Computes the coefficients \[1/mm\] from the profile curvatures of rail and wheel, cosθ_W/ϱ \[1/mm\] and the skew χ
-/// \[rad\].
+/// Computes the coefficients of ξ², ξη and η² \[1/mm\] for a wheel on an extruded rail, from the curvatures of both profiles, `around`
+/// = cosθ/(R − z_C) of the wheel, all in \[1/mm\], and the skew χ \[rad\].
 pub fn form([k_r, k_w]: [f64; 2], around: f64, skew: f64) -> [f64; 3] {
     let (sin, cos) = skew.sin_cos();
     let along = k_w * cos * cos + around * sin * sin - k_r;

@@ -199,8 +199,8 @@ mod tests {
     const FEW_JOINTS: usize = 24;
 
     /// Fills a window, with columns beside its joints, by code for one kind of machine. The array is treated as being in
-    /// one kind of memory, so many values after the beginning of a cache line. Returns s and the largest number of spans of
-    /// the strips' columns.
+    /// one kind of memory; it begins `behind` values after the beginning of a cache line. Returns s and the largest number of
+    /// spans of the strips' columns.
     fn filled(
         placement: &Placement,
         count: i32,

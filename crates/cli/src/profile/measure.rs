@@ -145,7 +145,7 @@ impl MeasureArguments {
 
     fn question(&self) -> Result<AskedMeasures> {
         let (nominal, options) = (self.several.nominal()?, self.options()?);
-        // Options without meaning are not the fault of each file.
+        // Invalid options are one error, not one for each file.
         if let Some(side) = self.several.side() {
             options.validate(side, nominal.is_some())?;
         }
@@ -157,7 +157,7 @@ impl MeasureArguments {
         Ok(AskedMeasures { nominal, options, noise: noise.transpose()? })
     }
 
-    /// Says what values spread over, if that is asked for.
+    /// Returns what the spread of the values comes from, repeats or noise, in words; `None` if no spread is asked for.
     fn spread(&self, question: &AskedMeasures) -> Option<String> {
         if self.repeats {
             return Some("over the repeats; 95 % of further measurements".into());

@@ -1,4 +1,4 @@
-//! `wheelrail profile`: list, show, plot and convert profiles.
+//! `wheelrail profile`: lists, shows, plots, converts, measures and averages profiles.
 
 mod average;
 mod convert;

@@ -13,7 +13,7 @@ use wheelrail::measure::MeasureOptions;
 use wheelrail::measured::{CurveKind, Options};
 use wheelrail::profile::Side;
 
-/// The curve through measured points, if no option names one: smoothing rounds the tip of a flange, by which qR is up to 0.09 mm off.
+/// The curve through measured points, if no option names one: smoothing rounds the tip of a flange and changes qR by up to 0.09 mm.
 const CURVE: Option<CurveKind> = Some(CurveKind::Interpolation);
 
 /// The profiles, their nominal, and how they are aligned.
@@ -54,7 +54,7 @@ impl SeveralArguments {
         self.files.par_iter().map(|file| self.source(file, self.measured.clone())).collect()
     }
 
-    /// Reads the nominal, to which the options of measured files do not belong.
+    /// Reads the nominal, to which the options of measured files do not apply.
     ///
     /// # Errors
     /// A name or file that is no profile.
@@ -96,7 +96,7 @@ impl SeveralArguments {
     /// Returns the one body of profiles, if it is known.
     ///
     /// # Errors
-    /// Wheels and rails.
+    /// Both wheels and rails.
     pub(super) fn body<'a>(
         &self,
         sources: impl IntoIterator<Item = &'a SourcedProfile>,

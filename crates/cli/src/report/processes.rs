@@ -31,7 +31,7 @@ pub(super) fn costs() -> Result<Vec<ProcessCost>> {
     PROCESSES.iter().map(cost).collect()
 }
 
-/// Returns the time of one run on the wall \[s\].
+/// Returns the wall-clock time of one run \[s\].
 fn once(program: &Path, scene: &Path) -> std::io::Result<f64> {
     let mut command = Command::new(program);
     command.arg("run").arg(scene).arg("--out").arg(scene.with_extension("files"));

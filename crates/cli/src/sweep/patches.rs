@@ -27,8 +27,8 @@ struct WrittenPosition {
     folders: Vec<String>,
 }
 
-/// Writes `position-0001/` and so on, `surface.pvd` and `summary.json` into a folder. All positions share the profiles and
-/// the search of the case; the scene is only copied into the summaries.
+/// Writes `position-0001/` and so on, `surface.pvd`, `wheelset.pvd` and `summary.json` into a folder. All positions share the
+/// profiles and the search of the case; the scene is only copied into the summaries.
 pub(super) fn write(
     folder: &Folder,
     scene: &Scene,

@@ -21,10 +21,10 @@ pub(super) struct SweepTable<'a> {
     pub drawn: bool,
 }
 
-/// What chunks of positions become.
+/// The results of a chunk of positions, or of all.
 #[derive(Default)]
 pub(super) struct SweptChunks {
-    /// Of one position.
+    /// The rows of the position that is being computed.
     columns: SweepColumns,
     text: String,
     /// The doubts of all positions.
@@ -86,7 +86,7 @@ impl SweepTable<'_> {
         self.positions.iter().step_by(self.stride()).map(|position| position.lateral).collect()
     }
 
-    /// Gives the distance between positions that are drawn.
+    /// Gives the number of positions from one that is drawn to the next.
     fn stride(&self) -> usize {
         self.positions.len().div_ceil(MOST_DRAWN).max(1)
     }

@@ -15,7 +15,7 @@ pub const PROMISED_RELATIVE: f64 = 1e-13;
 /// Error of t elsewhere that is promised to users \[mm\], × max(1, R_max/300 mm).
 pub const PROMISED_ABSOLUTE: f64 = 2e-12;
 
-/// Number of values of η between those of a file that are filled with them as a grid: columns of so many are interpolated.
+/// Number of values of η that a grid has in addition to those of a file: columns of so many points are interpolated.
 const BETWEEN: usize = 110;
 
 /// A way to compute t and the bounds it is held to. They are measured over all scenes. If less than a quarter of one is
@@ -75,11 +75,11 @@ pub struct GapValue {
 pub struct GapErrors {
     /// Largest relative error of t where the point lies over both contact segments.
     pub relative: f64,
-    /// Number of these points.
+    /// Number of values over both contact segments.
     pub over_contact: usize,
     /// Largest error of t elsewhere \[mm\], over max(1, R_max/300 mm).
     pub absolute: f64,
-    /// Number of these points.
+    /// Number of values elsewhere.
     pub elsewhere: usize,
     /// Number of points with a value where there is none, or without one where there is one.
     pub wrongly_masked: usize,

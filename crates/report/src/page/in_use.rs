@@ -77,7 +77,7 @@ pub(super) fn cost_table(costs: &[LoadCost]) -> String {
     markdown(&head, 3, &costs.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Returns the table of rates, one row per pair: rates, and their ratio to that of drawn arcs.
+/// Returns the table of rates, one row per pair: rates, and the ratio of the drawn arcs' rate to each.
 pub(super) fn rate_table(m: &Measurements) -> String {
     let mut head = vec!["pair".to_string()];
     for motion in Freedoms::ALL {

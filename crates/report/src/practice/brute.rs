@@ -28,7 +28,7 @@ pub(super) struct FirstTouch {
     pub height: f64,
     rail: Polyline,
     wheel: Polyline,
-    /// Pairs \[abscissa, gap at first touch\] \[mm\] at every vertex of either outline, ascending.
+    /// Pairs \[abscissa, gap at first touch\] \[mm\] at every vertex of either outline, by ascending abscissa.
     pub gaps: Vec<[f64; 2]>,
 }
 
@@ -55,8 +55,8 @@ impl PairOfVertices {
         (!gaps.is_empty()).then_some(FirstTouch { height: -least, rail, wheel, gaps })
     }
 
-    /// Returns the outline of the wheel along the rail, with its profile origin at height 0: the points where
-    /// a circle's normal is across the rail.
+    /// Returns the outline of the wheel as seen along the rail, with its profile origin at height 0: the points of
+    /// each circle whose surface normal has no component along the rail.
     fn outline(&self, standing: &Stance) -> Vec<[f64; 2]> {
         let axes = Directions::new(standing);
         let mut out: Vec<[f64; 2]> = Vec::with_capacity(self.wheel.len());

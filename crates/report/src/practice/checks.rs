@@ -19,7 +19,7 @@ const WITHIN: f64 = 0.2;
 /// Largest difference \[mm\] of a height or a gap from brute force. Chords are 1.3e-5 mm off a lip of 1 mm radius; on a
 /// flange of 75° this is four times as much in height.
 const HEIGHT: f64 = 1e-4;
-/// Largest difference \[mm\] of s from brute force, across the surface.
+/// Largest difference \[mm\] of s from brute force.
 const SEPARATION: f64 = 3e-5;
 /// Number of points at which s is compared.
 const POINTS: usize = 40;

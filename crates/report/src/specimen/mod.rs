@@ -260,7 +260,7 @@ fn head() -> Result<Vec<[f64; 2]>> {
     Ok(points)
 }
 
-/// Returns Gauss's bell: `height` at `centre`, 61 % of it at the distance `width`.
+/// Returns a Gaussian curve: `height` at `centre`, 61 % of it at the distance `width`.
 fn bell(at: f64, centre: f64, width: f64, height: f64) -> f64 {
     let share = (at - centre) / width;
     height * (-0.5 * share * share).exp()
