@@ -26,7 +26,7 @@ const BLOCK: usize = MANY;
 /// Most points of a grid that is filled by one thread, because waking another takes some 50 µs.
 const FEW_POINTS: usize = 65536;
 
-/// The end of columns whose points were all searched.
+/// The end of columns of a skewed wheel: no point is missing, because each was searched for.
 const SEARCHED: f64 = f64::NEG_INFINITY;
 
 /// Number of coefficients that the first column of a block begins with.
@@ -36,7 +36,7 @@ const FIRST_COUNT: usize = 4;
 /// of s: at and below [`crate::separation::FULL_PRECISION`] all digits near C are kept. Returns the largest truncation error
 /// \[mm\] that was measured meanwhile.
 ///
-/// With a body that varies every point is computed by itself, and the error is 0.
+/// With a body that varies every point is computed by itself, and 0 is returned.
 ///
 /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
 pub fn fill_normal_gap(
@@ -245,7 +245,7 @@ impl<'g, 'a> BlockColumns<'g, 'a> {
     }
 
     /// Interpolates t over an interval of η. Returns the least and the largest |t| at the Chebyshev points, or `None` where
-    /// t does not lie over one branch of the wheel or has too many digits for one polynomial.
+    /// t does not lie over one branch of the wheel or one polynomial does not reach the demand.
     fn interpolated(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) -> Option<Interval> {
         let interval = Interval::new(*eta.first()?, *eta.last()?);
         let bodies = &self.gap.bodies;

@@ -66,14 +66,14 @@ pub struct GapPoint {
     pub wheel_normal: Option<Unit<Vector3<f64>>>,
 }
 
-/// The column of one σ, with what one of its points knows for the next.
+/// The column of one σ, with the feet of its last point, from which those of the next are sought.
 #[derive(Debug)]
 pub struct GapColumn {
     /// The point and normal of the rail's profile.
     pub rail: RailPoint,
     /// Feet along that normal on a wheel that varies; `None` on a wheel of revolution.
     wheel: Option<Feet<Box<FramedLoft>>>,
-    /// Those on a rail that varies; `None` on one that is swept.
+    /// Feet along that normal on a rail that varies; `None` on a rail or roller that is swept.
     below: Option<Feet<Box<FramedLoft>>>,
     /// The column of a roller under its own profile, upside down; `None` on a rail.
     under: Option<Box<GapColumn>>,
@@ -81,8 +81,9 @@ pub struct GapColumn {
 
 /// The wheel's point on a line along the rail's normal.
 enum WheelPoint {
+    /// A point of a wheel of revolution.
     Round(RayPoint),
-    /// Seen along that normal.
+    /// A point of a wheel that varies, as a foot along that normal.
     Varying(LoftFoot),
 }
 
@@ -233,7 +234,7 @@ impl<'a> NormalGap<'a> {
 }
 
 impl WheelPoint {
-    /// Its height over the rail's point along the rail's normal \[mm\].
+    /// Returns the height over the rail's point along the rail's normal \[mm\].
     fn height(&self) -> f64 {
         match self {
             Self::Round(point) => point.t,

@@ -115,7 +115,7 @@ impl<'a> RayBodies<'a> {
 }
 
 impl<'a> Ray<'a> {
-    /// Returns the same ray at another η′ \[mm\]; for a wheel without skew.
+    /// Returns this ray with its starting point at another η′ \[mm\]; for a wheel without skew.
     pub fn at(&self, eta: f64) -> Self {
         Self { eta, ..*self }
     }

@@ -22,12 +22,12 @@ pub struct RayStart<const N: usize> {
     pub e: Lanes<N>,
     /// The wheel's points.
     pub points: BranchPoints<N>,
-    /// Whether they are above the midplane of both contact segments, from where t keeps all digits.
+    /// Whether they are in the midplane over both contact segments, from where t keeps all digits.
     pub over_contact: bool,
 }
 
 impl<const N: usize> RayStart<N> {
-    /// Returns that of one ray.
+    /// Returns the start of the k-th ray.
     #[inline(always)]
     pub fn lane(&self, k: usize) -> RayStart<1> {
         let Self { t, e, points, over_contact } = self;
@@ -47,7 +47,7 @@ pub struct Met<const N: usize> {
 }
 
 /// Finds where rays meet a piece in the wheel's own midplane, e = 0. Under skew all come from one point of the rail. Returns
-/// `None` where one misses it, and if N > 1 and not all have the accuracy of the contact segments or none.
+/// `None` where one misses it, and if N > 1 and only some have the accuracy of the contact segments.
 #[inline(always)]
 pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<RayStart<N>> {
     let (bodies, n) = (rays[0].bodies, directions(rays));

@@ -11,7 +11,7 @@ use crate::separation::sagitta;
 /// Most steps to the sagitta of a point. Each gains some three digits.
 const STEPS: usize = 40;
 
-/// Largest move \[mm\] along a ray by which a rounding of ξ is made good. A ray that touches the profile may have another entry.
+/// Largest correction \[mm\] along a ray for a rounding of ξ. A larger one may lead to another entry of a ray that touches the profile.
 const LARGEST_REST: f64 = 1e-6;
 
 /// Roundings of the sagitta below which its steps have settled.
@@ -42,8 +42,8 @@ pub fn point(ray: &Ray<'_>) -> Option<RayPoint> {
     simple.filter(|point| ray.begins_on_side(point.t)).or_else(|| searched(ray))
 }
 
-/// Finds the point of [`point`] where the profile between the rail's point and the ray is not known to turn away from the ray
-/// everywhere.
+/// Finds the wheel's point at a ray's own η′ on any profile, whether or not the ray crosses each piece only once. Which entry counts,
+/// and `None`, are as for [`point`].
 ///
 /// Method: the profile is followed from the abscissa of the rail's point until it first crosses the ray. A part that crosses the ray
 /// twice is found unless the ray touches it within the change of the sagitta.
@@ -63,7 +63,7 @@ pub fn searched(ray: &Ray<'_>) -> Option<RayPoint> {
 }
 
 impl Sight<'_, '_> {
-    /// Finds t \[mm\] of the ray's point that is abreast of a point of the profile, and its sagitta \[mm\].
+    /// Finds t \[mm\] of the ray's point that is nearest to a point of the profile, and its sagitta \[mm\].
     fn abreast(&self, at: [f64; 2]) -> (f64, f64) {
         let (ray, mut e) = (self.ray, self.own);
         let mut t = ray.t_through(at, e);
@@ -134,7 +134,7 @@ impl Sight<'_, '_> {
         let leans_right = ray.n[0] > 0.0;
         let at = ray.pieces().partition_point(|piece| piece.xi.high < from);
         if let Some(piece) = ray.pieces().get(at).filter(|piece| piece.xi.low <= from) {
-            // With the ray from a rail's point outside of the material, and against it from one inside.
+            // The profile is followed in the ray's direction if the rail's point is outside of the material, else against it.
             let begin = self.beside([from, ray.branch(piece).height(from)]);
             return Some((at, begin, begin.by < 0.0));
         }

@@ -154,7 +154,7 @@ impl<'a> RaySpan<'a> {
         Self { ray: *ray, piece, branch, begin, w, end, from, joint }
     }
 
-    /// Finds the span that holds a ray's own η′; `None` where the way there has none.
+    /// Finds the span that holds a ray's own η′; `None` where [`Self::first`] or [`Self::next`] finds none on the way there.
     pub fn holding(ray: &Ray<'a>) -> Option<Self> {
         let mut span = Self::first(ray)?;
         while span.is_passed() {
@@ -174,7 +174,7 @@ impl<'a> RaySpan<'a> {
         w > 0.0 && eta * eta > self.end * (2.0 * w + self.end)
     }
 
-    /// Finds the point at another η′ \[mm\] of the ray.
+    /// Finds the point at another η′ \[mm\] of the ray; `None` before the span counts, and as for [`meet`].
     pub fn point_at(&self, eta: f64) -> Option<RayPoint> {
         let ray = self.ray.at(eta);
         let Met { t: [t], e: [e], w: [w] } = meet(&[ray], self.branch, &self.begin)?;

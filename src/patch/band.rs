@@ -15,7 +15,7 @@ use crate::profile::Section;
 /// Least step of a surface, in roundings of the profile's extent. A smaller one counts as a smooth joint.
 const STEP_ROUNDINGS: f64 = 64.0;
 
-/// Length, as a share of a band, of what lies between two corners that are one.
+/// Distance of two corners, as a share of the band's length, up to which they count as one.
 pub(super) const ONE_CORNER: f64 = 1e-11;
 
 /// Rounding of s in units of the rounding of the coordinates.
@@ -24,11 +24,11 @@ const ROUNDINGS: f64 = 4.0;
 /// A place at which s may be least.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
-    /// The valley that turns; `None` without skew.
+    /// The valley along which s turns, or the lane where a body varies; `None` where slices have no valleys.
     pub(super) valley: Option<usize>,
     /// ξ \[mm\].
     pub(super) xi: f64,
-    /// s − δ over the valley \[mm\], which is not larger elsewhere at ξ; NaN where it is not known.
+    /// s − δ over the valley \[mm\]: no point of its slice at ξ lies lower. NaN if it is not known.
     pub(super) depth: f64,
 }
 
@@ -39,10 +39,10 @@ pub(crate) struct Band {
     pub(crate) xi: Interval,
     /// What bounds the band at either end of `xi`; `None` where the component continues in other bands.
     pub(crate) ends: [Option<End>; 2],
-    /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip.
+    /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip, unless s is level along that end.
     pub(crate) sides: [Interval; 2],
-    /// Pairs (ξ, valleys) by ascending ξ, empty without skew: the valleys that lie in the band up to that ξ, the deepest
-    /// first. Slices are found from the deepest valley.
+    /// Pairs (ξ, valleys) by ascending ξ: the valleys that lie in the band up to that ξ, the deepest first, from which slices are
+    /// found. Where a body varies it is the band's lane; empty without skew, on a roller and over the rail's surface.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
     /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,
@@ -53,13 +53,13 @@ pub(crate) struct Band {
 }
 
 impl Band {
-    /// Returns the valleys in the band at ξ, the deepest first. There are none without skew.
+    /// Returns the valleys in the band at ξ, the deepest first. There are none where slices are found without valleys.
     pub(super) fn valleys_at(&self, xi: f64) -> &[usize] {
         let k = self.valleys.partition_point(|(to, _)| *to < xi).min(self.valleys.len().saturating_sub(1));
         self.valleys.get(k).map_or(&[], |(_, valleys)| valleys)
     }
 
-    /// Returns the valley from which the slice at ξ is found; `None` without skew.
+    /// Returns the valley or lane from which the slice at ξ is found; `None` where slices are found without valleys.
     pub(crate) fn valley(&self, xi: f64) -> Option<usize> {
         self.valleys_at(xi).first().copied()
     }
@@ -118,11 +118,11 @@ impl Band {
         self.stretches = stretches;
     }
 
-    /// Returns the rounding of the square of half the width \[mm²\]: that of s, by what the square is per depth in the middle of the
-    /// band.
+    /// Returns the rounding of the square of half the width \[mm²\]: the rounding of s times the square over the depth, both in the
+    /// middle of the band. Where a body varies it is a share of that square.
     fn noise(&self, outline: &mut Outline<'_>) -> f64 {
         let rail = &outline.slicer.placement().rail().section;
-        // The arc length is as large as both coordinates.
+        // Over the rail's surface the arc length stands for both coordinates.
         let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
         let size = self.xi.map(|xi| height(xi) + xi.abs());
         let middle = self.xi.middle();
@@ -323,7 +323,7 @@ pub(super) fn halved(xi: f64, [low, high]: [f64; 2]) -> [f64; 3] {
     [xi, half * half, low + half]
 }
 
-/// Returns the edges \[mm\] at ξ that follow from two slices, given as [`halved`]; NaN if there are none.
+/// Returns the edges \[mm\] at ξ on the straight line through two slices, each as [`halved`] returns it; NaN if these are NaN.
 pub(super) fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3]; 2], xi: f64) -> [f64; 2] {
     let share = (xi - y) / (y - x);
     let half = (other + (other - square) * share).sqrt();
@@ -331,8 +331,8 @@ pub(super) fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3];
     [middle - half, middle + half]
 }
 
-/// Returns the ξ between the ends of a range \[mm\] at which a body's surface steps or ends because its profile overhangs. `extent` is that of
-/// the profile.
+/// Returns the ξ between the ends of a range \[mm\] at which a body's surface steps or ends because its profile overhangs. `extent` is
+/// that of the profile \[mm\].
 pub(super) fn steps(section: &Section, xi: Interval, extent: f64) -> impl Iterator<Item = f64> {
     let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;
     let torn = move |k: usize| {

@@ -1,8 +1,8 @@
 //! Finds the slices of a patch by roots: of a wheel on a roller, with and without skew, and over the rail's own surface.
 //!
 //! Along a line of constant ξ or σ both bodies bend away from each other, so that the gap falls to one lowest place and rises on
-//! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where its hollow is narrower than
-//! the sum of the bodies' curvatures around their axles allows: κ sin²χ > 1/ϱ_W + 1/ϱ_R.
+//! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where a hollow of its profile has
+//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles.
 
 use super::level::Level;
 use super::skewed::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
@@ -46,7 +46,7 @@ impl<'a> ByRoots<'a> {
         Self { level, skewed: placement.skew() != 0.0, approach, opening, step, steps }
     }
 
-    /// Returns η \[mm\] of the least gap at ξ; NaN where a body has no surface.
+    /// Returns η \[mm\] of the least gap at ξ: 0 without skew; with skew NaN where a body has no surface at η = 0.
     pub(super) fn lowest(&mut self, xi: f64) -> f64 {
         if !self.skewed {
             return 0.0;
@@ -97,8 +97,10 @@ impl<'a> ByRoots<'a> {
         None
     }
 
-    /// Returns whether the whole line of ξ is surely farther apart than δ: the lowest place of a parabola with the gap and slope at η = 0
-    /// lies a quarter as far below as is allowed for. `None` where a body has no surface at η = 0.
+    /// Returns whether the bodies are surely farther apart than δ along the whole line of ξ; `None` where a body has no surface at η = 0.
+    ///
+    /// Method: with skew, a parabola with the gap and slope at η = 0 falls below that gap by slope²/4a, with a the opening; slope²/a is
+    /// allowed for.
     pub(super) fn is_apart(&mut self, xi: f64) -> Option<bool> {
         let allowed = if self.skewed { self.opening.recip() } else { 0.0 };
         let GapSlopes { gap, slopes: [_, across], .. } = self.level.at(xi, 0.0)?;
@@ -125,7 +127,8 @@ impl<'a> ByRoots<'a> {
         Some([lower, upper])
     }
 
-    /// Returns the end of a slice on one side of its lowest place, to which `reach` \[mm\] leads.
+    /// Returns the end of a slice on one side of its lowest place. `reach` \[mm\] is about its distance from there, with the sign of
+    /// the side.
     fn edge(&mut self, xi: f64, lowest: f64, reach: f64) -> Edge {
         let approach = self.approach;
         let mut miss = |eta: f64| self.level.gap(xi, eta) - approach;
@@ -163,6 +166,7 @@ impl<'a> ByRoots<'a> {
     }
 
     /// Returns one end of the slice at ξ \[mm\] by Newton's steps from a guess of both, and the abscissae of the profiles' points there.
+    /// `None` as for [`newton_from`].
     pub(super) fn edge_near(
         &mut self,
         xi: f64,

@@ -43,7 +43,8 @@ pub struct Component {
     /// Outer boundary: a closed loop of \[ξ, η\] \[mm\], counter-clockwise seen from +ζ. The first point is
     /// not repeated; the tips are exact.
     pub boundary: Vec<[f64; 2]>,
-    /// Boundaries of the holes: closed loops of \[ξ, η\] \[mm\], clockwise. Only a skewed wheel makes holes.
+    /// Boundaries of the holes: closed loops of \[ξ, η\] \[mm\], clockwise. Only a skewed wheel or a body that varies makes
+    /// holes.
     pub holes: Vec<Vec<[f64; 2]>>,
     /// Area \[mm²\], with a relative accuracy of about 1e-12, or of the rounding of s over δ if that is larger.
     pub area: f64,
@@ -92,14 +93,15 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Finds all components inside the window. Without skew a line of constant ξ meets a component in one interval of η.
-    /// With skew it may meet it in several, and a component may have holes.
+    /// Finds all components inside the window. A line of constant ξ meets a component in one interval of η. Under a skewed wheel on a
+    /// rail, and where a body varies, it may meet it in several, and a component may have holes.
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
     /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
     /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
     /// Where a body varies a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
-    /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and the boundary is interpolated to 1e-9 of its width.
+    /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
+    /// the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Plane))
     }
@@ -224,7 +226,7 @@ impl BandGroup {
     }
 
     fn component(mut self, outline: &mut Outline<'_>) -> Component {
-        // Without skew the slices do not say more about the least s.
+        // Without valleys the slices do not say more about the least s.
         let known = (outline.slicer.skewed.is_none() && outline.slicer.varying.is_none())
             .then(|| self.deepest(outline, &[]));
         let rows = self.rows(outline, known.map(|known| known[0]));
@@ -262,8 +264,8 @@ impl BandGroup {
     }
 
     /// Finds the corners of every band, and its slices at the points of the loops. These are every corner, the ξ between
-    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\], known
-    /// without skew.
+    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\],
+    /// `None` if it is not known yet.
     fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
         let whole = self.xi().width();
         let varying = outline.slicer.varying.is_some();
@@ -303,7 +305,7 @@ impl BandGroup {
         all
     }
 
-    /// Returns \[s, ξ, η\] of the smallest s. The candidates are C, the component's ends, and the places where s turns along the valleys
+    /// Returns \[s, ξ, η\] of the smallest s. The candidates are C, the ends of the bands, and the places where s turns along the valleys
     /// of the component and is not known to be larger; if the window cuts a valley off, also the points of the loops.
     fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
         let mut least = [f64::NAN, self.xi().low, 0.0];
@@ -315,7 +317,7 @@ impl BandGroup {
         for (k, band) in self.bands.iter().enumerate() {
             let holds = |xi: f64| band.xi.contains(xi);
             let mut places = Vec::new();
-            // C is the first candidate, so that it is chosen if s² underflows at several.
+            // C is the first candidate, so that it is chosen if s is 0 at several because ξ² underflows.
             places.extend(holds(0.0).then_some(0.0));
             places.extend(band.xi.ends());
             let cut = outline.window.eta.ends().into_iter().any(f64::is_finite) && !band.valleys.is_empty();

@@ -8,7 +8,7 @@ use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, change, last_where};
 
 /// Distance from a band up to which joints of the wheel are examined, as a multiple of the band's depth × sinθ. It is
-/// enough for slopes up to 80°. A joint beyond it that is missed only costs the quadrature some panels.
+/// enough for slopes up to 80°. A joint beyond it that is missed only costs the boundary some more stretches.
 const FAR_JOINTS: f64 = 16.0;
 
 /// Number of intervals of a circle in which a root of s = δ is sought. Two roots within one interval are missed.
@@ -21,7 +21,7 @@ const JOINT_PLACES: usize = 32;
 const DOUBLINGS: usize = 40;
 
 /// Appends the ξ inside a band where, without skew, its boundary crosses a joint or the end of the wheel's
-/// surface. The two branches mirror each other.
+/// surface. The two branches mirror each other. `deepest` is the least s of the component \[mm\].
 ///
 /// Method: closed form except for one root at each joint. The point over the joint at p lies at ξ = p + e sinθ and height
 /// h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
@@ -111,7 +111,7 @@ struct JointTrail<'t, 'a> {
 }
 
 impl JointTrail<'_, '_> {
-    /// Returns what lies under the edges at ξ; `None` outside the patch.
+    /// Finds the edges at ξ and the profiles' points under them; `None` outside the patch.
     fn feet(&mut self, xi: f64) -> Option<EdgeFeet> {
         let near = self.by_roots.edges_near(xi, extrapolated(&self.known, xi));
         let edges = near.or_else(|| Some(self.by_roots.edges(xi)?.map(|edge| edge.eta)))?;

@@ -61,9 +61,9 @@ impl<'a> EdgeFinder<'a> {
         }
     }
 
-    /// Finds the lower and the upper edges \[mm\] at 16 values of ξ in the patch, at which s may only rise from one lowest place to either
-    /// side. Returns `None` unless the rail has one piece there, each edge lies over one piece of the wheel, which is no wall, and the wheel
-    /// has no step on the way.
+    /// Finds the lower and the upper edges \[mm\] at 16 values of ξ in the patch, at which s may only rise from one lowest place to
+    /// either side. Returns `None` unless the rail has one piece there, each edge lies over one piece of the wheel, which is no wall,
+    /// and the wheel has no step on the way.
     pub(super) fn edges(&mut self, xi: &Lanes) -> Option<[Lanes; 2]> {
         let rail = self.rail.piece_at(xi[0])?;
         let Interval { low, high } = rail.xi.cut(self.wheel.section.reach()?);

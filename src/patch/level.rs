@@ -12,12 +12,12 @@ pub(super) enum Level<'a> {
     Plane {
         /// The placed pair.
         placement: &'a Placement,
-        /// s.
+        /// Computes s.
         evaluator: Evaluator<'a>,
     },
     /// t(σ, η) + δ (1 − cos α), which is δ where t is δ cos α.
     Rail {
-        /// t.
+        /// Computes t.
         gap: NormalGap<'a>,
         /// δ \[mm\].
         approach: f64,
@@ -27,7 +27,7 @@ pub(super) enum Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    /// Makes that of a placed pair over a surface, for an approach δ \[mm\].
+    /// Makes the gap of a placed pair over a surface, for an approach δ \[mm\].
     pub(super) fn new(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
         match reference {
             Reference::Plane => Self::Plane { placement, evaluator: Evaluator::new(placement) },
@@ -62,7 +62,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns the gap, its slopes along ξ and η, and the abscissae of the profiles' points; `None` where a body has no surface.
+    /// Returns the gap, its slopes along ξ and η, and the abscissae of the profiles' points. Where a body has no surface the result is
+    /// `None`, or the gap is NaN.
     pub(super) fn at(&mut self, xi: f64, eta: f64) -> Option<GapSlopes> {
         match self {
             Self::Plane { evaluator, .. } => evaluator.gap_and_slopes(xi, eta),
@@ -76,7 +77,7 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap; NaN where a body has no surface.
+    /// Returns \[∂/∂ξ, ∂/∂η\] of the gap; ∂/∂ξ is NaN where a body has no surface.
     pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         self.at(xi, eta).map_or([f64::NAN; 2], |at| at.slopes)
     }
@@ -92,7 +93,7 @@ fn versine(&RailPoint { cos, sin, .. }: &RailPoint) -> f64 {
     sin * sin / (1.0 + cos)
 }
 
-/// Takes the last column if it is that of σ \[mm\].
+/// Returns the last column if it is that of σ \[mm\], else a new one in its place; `None` beyond the rail's range.
 fn known<'c>(
     gap: &NormalGap<'_>,
     column: &'c mut Option<GapColumn>,

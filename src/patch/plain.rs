@@ -1,4 +1,5 @@
-//! Finds the bands of a patch without skew. A line of constant ξ then meets the patch in at most one interval.
+//! Finds the bands of a patch that a line of constant ξ meets in at most one interval: without skew, on a roller, and over the rail's
+//! own surface.
 
 use super::band::{Band, Turn, steps};
 use super::outline::{End, Outline};
@@ -105,7 +106,7 @@ fn closed(
 }
 
 /// Returns both ends of a range of ξ \[mm\], and all ξ between them where the depth may turn: joints and stationary points. The
-/// depth is monotone between neighbours.
+/// depth is monotone between neighbours, unless it turns twice within one of [`WINDOW_INTERVALS`].
 fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
     let [a, b] = over.ends();
     let over_rail = outline.slicer.is_over_rail();
@@ -131,8 +132,8 @@ fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
     points
 }
 
-/// Returns both ends of a range of ξ \[mm\], and between them known places, equal steps and the turns of the depth between these, ascending;
-/// but no places whose neighbours on both sides lie outside the patch as well.
+/// Returns both ends of a range of ξ \[mm\], and between them known places, equal steps and the turns of the depth between these,
+/// ascending. Places outside the patch whose neighbours are outside, too, are left out.
 fn sampled_turns(outline: &mut Outline<'_>, mut places: Vec<f64>, over: Interval) -> Vec<f64> {
     places.extend((1..WINDOW_INTERVALS).map(|k| over.step(k, WINDOW_INTERVALS)));
     places.sort_by(f64::total_cmp);

@@ -48,7 +48,7 @@ pub struct Slicer<'a> {
     spans: Vec<Span>,
     /// The slices of swept bodies on a roller, or over the rail's surface; `None` over the tangent plane of a rail.
     pub(super) by_roots: Option<ByRoots<'a>>,
-    /// The slices under a skewed wheel on a rail; `None` without skew.
+    /// The slices under a skewed wheel over the tangent plane of a rail, both swept; otherwise `None`.
     pub(super) skewed: Option<Skewed<'a>>,
     /// The slices where a body varies; `None` where both are swept.
     pub(super) varying: Option<Varying<'a>>,
@@ -124,7 +124,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
-    /// bodies.
+    /// bodies. Outside the patch of a body that varies it is s − δ at η = 0.
     pub fn depth(&mut self, xi: f64) -> f64 {
         if let Some(varying) = &mut self.varying {
             let eta = varying.lowest(xi, None);
@@ -174,8 +174,8 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] next to a guess; with skew, of the slice that holds `valley`. Returns `None` without skew over
-    /// the tangent plane of a rail, and if they are not surely those of the slice that was guessed.
+    /// Returns both ends of the slice at ξ \[mm\] next to a guess; with skew, of the slice that holds `valley`. Returns `None` without
+    /// skew over the tangent plane of a rail, where a body varies, and if they are not surely those of the slice that was guessed.
     pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
         match &mut self.by_roots {
             Some(by_roots) => by_roots.edges_near(xi, guess),
@@ -211,8 +211,8 @@ impl<'a> Slicer<'a> {
         self.foot_lifted(xi, depth, likely).or_else(|| self.foot_lifted(xi, depth, f64::INFINITY))
     }
 
-    /// Returns the wheel point that lies `depth` \[mm\] above the midplane point at ξ, or an earlier point at which the
-    /// surface ends or steps. Returns `None` if η² would exceed `u_max`.
+    /// Returns the edge at the wheel point that lies `depth` \[mm\] above the midplane point at ξ, or at an earlier point where the
+    /// surface ends or steps. Returns `None` if η² would exceed `u_max` \[mm²\], and if the wheel has no midplane point at ξ.
     fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Edge> {
         self.wheel.spans(xi, u_max, &mut self.spans);
         let half = |foot: SagittaPoint, ledge: bool| Edge { eta: foot.u.max(0.0).sqrt(), ledge };
@@ -230,8 +230,8 @@ impl<'a> Slicer<'a> {
         Some(half(self.wheel.point(xi, last, last.e.high), true))
     }
 
-    /// Returns η \[mm\] of the least s at ξ. It is 0 without skew, else the place where the wheel is parallel to η or its
-    /// surface ends; NaN where the wheel has no surface.
+    /// Returns η \[mm\] of the least s at ξ. It is 0 for swept bodies without skew, else the place where s neither rises nor falls
+    /// along η, or where a surface ends; NaN where a body has no surface. Outside the patch of a body that varies it is 0.
     pub fn lowest(&mut self, xi: f64) -> f64 {
         if let Some(varying) = &mut self.varying {
             return varying.lowest(xi, None);

@@ -15,7 +15,7 @@ const SHORTEST: f64 = 1e-7;
 const MOST_STRETCHES: usize = 1024;
 
 /// Number of stretches between two corners from which on the noise of edges is measured, by as many slices as a stretch takes: it may
-/// be larger than it is said to be.
+/// be larger than [`StretchFit::noise`].
 const NOISY: usize = 4;
 
 /// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
@@ -32,7 +32,7 @@ const TAIL: usize = 4;
 /// [`LEVEL_SHARE`]. Halving would not make them smaller. Those of a kink fall as slowly, but are larger.
 const LEVEL: f64 = 4.0;
 
-/// Largest share of the values that noise has. Where the wheel ends, edges have more noise than where s = δ.
+/// Largest noise, as a share of the values. Where the wheel ends, edges have more noise than where s = δ.
 const LEVEL_SHARE: f64 = 1e-12;
 
 /// Rounding of an edge, in roundings of its size.
@@ -203,15 +203,15 @@ impl Stretch {
         (((xi - a) - (b - xi)) / (b - a)).clamp(-1.0, 1.0)
     }
 
-    /// Returns the root of the distance from an end, as a share of that of the range.
+    /// Returns the square root of the distance from an end as a share of the range.
     #[inline(always)]
     fn root(&self, from: usize, xi: f64) -> f64 {
         ((xi - self.xi[from]) / (self.xi[1 - from] - self.xi[from])).clamp(0.0, 1.0).sqrt()
     }
 }
 
-/// Returns the rounding \[mm\] of edges of this size, half the narrowest width of which is given, by that of the square of the latter.
-/// Where nothing but rounding is left of the width, it is as large as its own rounding.
+/// Returns the rounding \[mm\] of edges of a size \[mm\], from half the narrowest width \[mm\] and `noise`, the rounding of its square
+/// \[mm²\]. Half a width that is nothing but rounding counts as √noise.
 fn rounding(size: f64, narrowest: f64, noise: f64) -> f64 {
     EDGE_ROUNDINGS * f64::EPSILON * size + noise / (2.0 * narrowest.max(noise.sqrt()))
 }

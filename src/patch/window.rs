@@ -17,7 +17,7 @@ impl Window {
     /// The whole plane: only the ends of the bodies bound the patch.
     pub const UNBOUNDED: Self = Self { xi: Interval::ALL, eta: Interval::ALL };
 
-    /// Tells whether the two share a point, one on their edges included.
+    /// Tells whether this window and another share a point, their edges included.
     pub fn meets(&self, other: &Self) -> bool {
         self.xi.meets(other.xi) && self.eta.meets(other.eta)
     }
@@ -33,7 +33,7 @@ impl Window {
         self.xi.contains(xi) && self.eta.contains(eta)
     }
 
-    /// Returns the smallest window that holds both.
+    /// Returns the smallest window that holds this one and another.
     pub fn hull(self, other: Self) -> Self {
         Self { xi: self.xi.hull(other.xi), eta: self.eta.hull(other.eta) }
     }

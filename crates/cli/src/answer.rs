@@ -5,6 +5,7 @@ use std::path::Path;
 use wheelrail::files::write_file;
 use wheelrail::{Error, Result};
 
+/// The outcome of a command, which decides its exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// The command did what it was asked to do.

@@ -16,7 +16,7 @@ type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
 pub(crate) fn values(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let numbers = argument.extract::<Numbers<'_>>().map_err(|_| no_axis(name, argument))?;
     if !numbers.data().is_aligned() {
-        // What comes out of a message or a file may begin at any byte; no number of Rust does.
+        // An array from a message or a file may begin at any byte, which Rust's slices of numbers may not.
         return values(name, &numbers.call_method0("copy")?);
     }
     Ok(match numbers.as_slice() {
@@ -69,7 +69,7 @@ pub(crate) fn grid<'py>(
     py: Python<'py>,
     [(first, rows), (second, columns)]: [(&str, &[f64]); 2],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    /// Points of a grid, 8 GB of numbers: more is two arguments in the wrong unit, or a study that should take blocks.
+    /// Most points of a grid, 8 GB of numbers. A larger grid has axes in a wrong unit, or should be computed in blocks.
     const MOST: usize = 1_000_000_000;
     let (n, m) = (rows.len(), columns.len());
     match n.checked_mul(m) {

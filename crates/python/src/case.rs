@@ -127,8 +127,8 @@ impl Case {
         self.inner.case.warnings()
     }
 
-    /// The contacts, the first one first: the chosen one, or all that a search finds under the scene's approach or load, each
-    /// with its approach and its share of the load.
+    /// The contacts, the right side's before the left's: the chosen one, or all that a search finds under the scene's approach or
+    /// load, each with its approach and its share of the load.
     ///
     /// Raises GeometryError for a wheel that touches nothing; InputError for a load that no approach carries.
     #[getter]
@@ -304,7 +304,7 @@ impl Case {
         Self { inner: Arc::new(Inner { case, path, is_file, given, run: OnceLock::new() }) }
     }
 
-    /// Resolves a scene whose profiles may have names of Python's.
+    /// Resolves a scene, which may name profiles of the dict `profiles`.
     fn resolved(
         py: Python<'_>,
         scene: Scene,
@@ -347,7 +347,7 @@ impl Case {
         Ok((system, position))
     }
 
-    /// Gives everything computed from the case, once.
+    /// Gives everything computed from the case; the first call computes it.
     fn computed(&self, py: Python<'_>) -> PyResult<Arc<wheelrail::Run>> {
         if let Some(run) = self.inner.run.get() {
             return Ok(Arc::clone(run));

@@ -48,7 +48,7 @@ impl Default for Deviations {
 ///     >>> found["functions"]["delta_r_mm"].shape
 ///     (161,)
 ///
-/// Raises InputError for options without meaning, a roll that is given, and a case without wheelset.
+/// Raises InputError for options without meaning, a roll in rad, and a case without wheelset.
 #[pyfunction]
 #[pyo3(signature = (wheelset, *, roll = None, amplitude = 8.0, step = 0.1, gauges = None, noise = None, samples = 400, seed = 1))]
 #[expect(clippy::too_many_arguments, reason = "these are keywords")]

@@ -261,7 +261,7 @@ impl Contact {
         eta: &Bound<'py, PyAny>,
     ) -> PyResult<NormalArrays<'py>> {
         let [xi, eta] = checked_axes(("xi", xi), eta, 1.0)?;
-        // The grid of the numbers of both bodies, so that its size is checked.
+        // This array is made only to check the number of points.
         let placement = self.placement()?;
         grid(py, [("xi", &xi), ("eta", &eta)])?;
         let [rail, wheel] = detached(py, || {
@@ -368,7 +368,7 @@ impl Contact {
     }
 
     /// Return the Report's midplane table as text: the transformed parameters, and both heights and the gap at every `xi` in mm,
-    /// 101 steps over both bodies if None.
+    /// 101 values over both bodies if None.
     #[pyo3(signature = (xi = None))]
     fn midsep(&self, xi: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
         let placement = self.placement()?;

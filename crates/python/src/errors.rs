@@ -6,7 +6,7 @@ use wheelrail::case::Doubt;
 use wheelrail::measured::Finding;
 use wheelrail::{Error, ErrorKind};
 
-/// What scenes and the command line call a thing, and what Python calls it.
+/// Texts of scenes and of the command line, each with the text that messages in Python have instead.
 const WORDS: [(&str, &str); 13] = [
     ("see `wheelrail schema` and the manual, src/docs/scene.md", "see `help(wheelrail)`"),
     (
@@ -29,7 +29,7 @@ const WORDS: [(&str, &str); 13] = [
     ("give it as the rail", "make it by `wheelrail.rail`"),
 ];
 
-/// Tables of a scene that arguments have no need of.
+/// Names of a scene's tables that are cut off where a message names an argument.
 const TABLES: [&str; 8] =
     ["wheelset: ", "track: ", "contact: ", "patch: ", "grid: ", "material: ", "wheel: ", "conicity: "];
 

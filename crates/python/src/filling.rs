@@ -26,7 +26,7 @@ pub(crate) fn checked_axes(
     Err(exception(Error::new("tolerance", found, expected, "1e-12 gives all digits")))
 }
 
-/// Fills a grid. Methods and wheels that take microseconds a point are filled in parts, between which Ctrl-C is looked for.
+/// Fills a grid. Where the method is slow or the wheel skewed, large grids are filled in parts, with a check for Ctrl-C in between.
 pub(crate) fn fill(
     py: Python<'_>,
     plan: &mut Plan,

@@ -14,10 +14,10 @@ use wheelrail::{Error, Result};
 
 use crate::errors::OrRaise;
 
-/// How often Ctrl-C is looked for and progress is told: a quarter of what a person takes to notice.
+/// Time between two checks for Ctrl-C and calls of `progress`: a quarter of the 0.2 s in which Ctrl-C ends the work.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// How far long work is, and whether somebody still wants it.
+/// How far long work is, and whether its result is still wanted.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
     done: AtomicUsize,
@@ -32,7 +32,7 @@ impl Watch {
         self.all.store(all, Ordering::Relaxed);
     }
 
-    /// Ends work that nobody wants any more: its error never reaches anybody.
+    /// Ends work whose result is not wanted, by an error that no user sees.
     ///
     /// # Errors
     /// After Ctrl-C.
@@ -84,8 +84,8 @@ fn fault(panic: &(dyn Any + Send)) -> PyErr {
     PyRuntimeError::new_err(format!("a fault of wheelrail, please report it: {text}"))
 }
 
-/// Does work that looks at its watch often. Ctrl-C ends it within 0.2 s. `progress` is as `wheelrail._progress.shown` takes it,
-/// and counts positions.
+/// Does work that often calls [`Watch::go_on`], so that Ctrl-C ends it within 0.2 s. `progress` is as `wheelrail._progress.shown`
+/// takes it; its bar counts positions.
 ///
 /// # Errors
 /// Those of the work and of `progress`; KeyboardInterrupt.
@@ -103,7 +103,7 @@ pub(crate) fn watched<T: Send>(
     result.and_then(|value| closed.map(|_| value))
 }
 
-/// Does work that looks at its watch often, and calls `progress(done, all)`.
+/// Does work that often calls [`Watch::go_on`], and calls `progress(done, all)`.
 fn told<T: Send>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
@@ -127,8 +127,8 @@ fn told<T: Send>(
     Ok(value)
 }
 
-/// Does work that nothing can stop half way. Ctrl-C ends the wait for it within 0.2 s: its thread goes on to its end, and
-/// the work has to look at its watch before it leaves anything behind.
+/// Does work that cannot be stopped half way. Ctrl-C ends the wait for it within 0.2 s: its thread goes on to its end, and
+/// the work has to call [`Watch::go_on`] before it writes results.
 ///
 /// # Errors
 /// Those of the work; KeyboardInterrupt.

@@ -149,7 +149,7 @@ impl Pair {
 /// Rail, wheel, radius and roller.
 type PairParts = (Profile, Profile, f64, Option<f64>);
 
-/// Make a pair of its parts, without a word of what was doubted when it was first made.
+/// Make a pair of its parts, without repeating the warnings of when it was first made.
 #[pyfunction]
 pub(crate) fn pair_from_parts(
     rail: Profile,

@@ -118,7 +118,7 @@ impl PairContact {
         })
     }
 
-    /// Tells whether two places are the same of equal pairs.
+    /// Tells whether two contacts have the same origin and name, and equal pairs.
     ///
     /// # Errors
     /// Those of comparing two cases.
@@ -138,7 +138,7 @@ impl PairContact {
     }
 }
 
-/// Makes a pair of the library of its parts; radii \[mm\].
+/// Makes a pair of the library from its parts; radii \[mm\].
 pub(crate) fn joined(
     rail: wheelrail::Profile,
     wheel: wheelrail::Profile,

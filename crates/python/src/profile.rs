@@ -47,7 +47,7 @@ pub(crate) struct Profile {
 struct MeasuredFacts {
     /// What was done, as JSON.
     record: String,
-    /// The same in a line.
+    /// The record in one line.
     about: String,
     /// The points \[mm\] in the profile's axes.
     points: Vec<[f64; 2]>,
@@ -331,7 +331,7 @@ impl Profile {
 }
 
 impl Profile {
-    /// Makes a profile that nothing is known of but its body.
+    /// Makes a profile of which only the body is known.
     pub(crate) fn of(profile: &wheelrail::Profile, side: Side) -> Self {
         Self { profile: profile.clone(), side: Some(side), fitted: None }
     }
@@ -377,7 +377,7 @@ impl Profile {
         Ok(Self { profile, side, fitted: Some(Arc::new(fitted)) })
     }
 
-    /// Another place of the same profile; `point` moves its points there.
+    /// Makes the moved profile, with the measured points moved by `point`.
     fn moved(&self, profile: wheelrail::Profile, point: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
         let moved = |fitted: &Arc<MeasuredFacts>| {
             let points = fitted.points.iter().copied().map(&point).collect();
@@ -473,7 +473,7 @@ pub(crate) fn keywords<T: Default + DeserializeOwned + Serialize>(
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<T> {
     let Some(options) = options else { return Ok(T::default()) };
-    // None is what a keyword has that is not given.
+    // A keyword that is None counts as not given.
     let given = PyDict::new(py);
     for (key, value) in options.iter().filter(|(_, value)| !value.is_none()) {
         given.set_item(key, value)?;

@@ -72,7 +72,7 @@ pub(crate) fn sweep<'py>(
 
 /// Lists the positions; ten million take half a second.
 fn listed(positions: &Positions, watch: &Watch) -> wheelrail::Result<Vec<Position>> {
-    /// Positions between two looks at the watch.
+    /// Positions between two calls of [`Watch::go_on`].
     const PART: usize = 1 << 16;
     let mut list = Vec::with_capacity(positions.count);
     while list.len() < positions.count {
@@ -119,9 +119,9 @@ pub(crate) fn sweep_picture(columns: &Bound<'_, PyDict>, title: &str) -> PyResul
 /// The positions of a table that a picture shows.
 pub(crate) struct DrawnPositions {
     pub(crate) columns: SweepColumns,
-    /// Their lateral displacements \[mm\].
+    /// Lateral displacements of the positions \[mm\].
     pub(crate) lateral: Vec<f64>,
-    /// What stands below the title.
+    /// Text below the title.
     pub(crate) about: String,
 }
 

@@ -14,7 +14,7 @@ use crate::arrays::{unset, values};
 use crate::errors::{OrRaise, exception};
 use crate::long::{detached, waited};
 
-/// Largest table that is read [bytes].
+/// Largest table that is read \[bytes\].
 const LARGEST: usize = 1 << 30;
 
 /// Tabulate the contact of a scene's wheelset over a range of lateral displacements in mm, as polynomials with a stated error.
@@ -188,7 +188,7 @@ impl ContactTable {
 }
 
 impl ContactTable {
-    /// Gives the yaws of so many displacements: the table's own, one, or as many.
+    /// Gives the yaws \[rad\] of `count` displacements: one for all, or one for each.
     fn yaws(&self, yaw: Option<&Bound<'_, PyAny>>, count: usize) -> PyResult<Vec<f64>> {
         let about = self.table.about();
         let given = yaw.map(|yaw| yaw.extract().map_or_else(|_| values("yaw", yaw), |one| Ok(vec![one])));
@@ -211,7 +211,7 @@ impl ContactTable {
         }
     }
 
-    /// Gives the yaw that is meant: that of a table under one may be left out.
+    /// Gives a yaw that the table has \[rad\]; it may be left out where the table is under one yaw.
     fn one_yaw(&self, yaw: Option<f64>) -> PyResult<f64> {
         let about = self.table.about();
         match yaw {
@@ -228,7 +228,7 @@ impl ContactTable {
         }
     }
 
-    /// Puts what belongs to quantities under their names, sides in dicts of their own.
+    /// Makes a dict of items by the names of their quantities, those of the sides in the dicts "left" and "right".
     fn by_name<'py>(
         &self,
         py: Python<'py>,

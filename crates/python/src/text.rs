@@ -31,7 +31,7 @@ pub(crate) fn parsed<T: DeserializeOwned + Serialize>(place: &str, value: &Bound
     scene::parse(&text, true).map_err(|error| keyed(&text, error).within(place)).or_raise()
 }
 
-/// Names the key at which reading JSON ended, in place of the line that nobody wrote.
+/// Names the key at which reading JSON ended, in place of its line, which the user has not written.
 pub(crate) fn keyed(text: &str, mut error: Error) -> Error {
     let Some(rest) = error.place.split("line ").nth(1) else { return error };
     let Some(number) = rest.split(',').next().and_then(|number| number.parse().ok()) else { return error };

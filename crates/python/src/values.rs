@@ -1,4 +1,4 @@
-//! Plain values, which have classes of Python.
+//! Makes plain values, whose classes are written in Python.
 
 use numpy::PyArray2;
 use pyo3::call::PyCallArgs;

@@ -40,7 +40,7 @@ use crate::values::made;
 #[derive(Clone)]
 pub(crate) struct Wheelset {
     pair: Pair,
-    /// The left-hand side's, where it is another.
+    /// The pair of the left-hand side, where it is another one.
     left: Option<Pair>,
     system: Arc<WheelsetOnTrack>,
     landmarks: Arc<SideLandmarks>,
@@ -194,8 +194,8 @@ impl Wheelset {
     ///
     /// `lateral` in mm, `yaw` in rad and `roll` are arrays or numbers, of one length once numbers are repeated; `roll` may
     /// also be "solve" or "neglect", for all positions. `within` mm: near misses up to this vertical gap are contacts too.
-    /// `conicity` adds the equivalent conicity at the amplitude of every lateral displacement; it needs a roll that is not
-    /// given. `load` in N or `approach` in mm adds the semi-axes of Hertz's ellipses, with E* `modulus` in N/mm2.
+    /// `conicity` adds the equivalent conicity at the amplitude of every lateral displacement; it needs the roll "solve" or
+    /// "neglect". `load` in N or `approach` in mm adds the semi-axes of Hertz's ellipses, with E* `modulus` in N/mm2.
     ///
     /// It runs on all threads without the GIL and gives the same bits on any number of them. `progress(done, all)` is called
     /// about twenty times a second, with positions; an exception in it ends the sweep, and so does Ctrl-C within 0.2 s.

@@ -77,14 +77,14 @@ impl<'a> Turned<'a> {
         Circle { p, height, radius: self.axle - p * self.tilt.im - height * self.tilt.re }
     }
 
-    /// Returns the circle of a profile point, and the t at which it is parallel to η. If that place is farther away, t is
-    /// ±[`FARTHEST`].
+    /// Returns the circle of a profile point, and the t on it at which the surface is parallel to η. If that place is farther away
+    /// than [`FARTHEST`], t is ±[`FARTHEST`].
     pub(super) fn parallel(&self, piece: usize, p: f64) -> (Circle, f64) {
         let Parallel { circle, t, .. } = self.parallel_with_direction(piece, p);
         (circle, t)
     }
 
-    /// Returns the place of a profile point that is parallel to η, with the direction of the surface there.
+    /// Returns the place on the circle of a profile point where the surface is parallel to η, with the direction of the surface there.
     pub(super) fn parallel_with_direction(&self, piece: usize, p: f64) -> Parallel {
         let tangent = self.section.branches[self.section.pieces[piece].branch].station(p);
         let (t, direction) = self.parallel_of(Vector2::new(tangent.cos, tangent.sin));

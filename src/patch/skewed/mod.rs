@@ -1,4 +1,4 @@
-//! The patch under a skewed wheel. A line of constant ξ may meet it in several intervals; each is found from a valley.
+//! The patch under a skewed wheel on a rail. A line of constant ξ may meet it in several intervals; each is found from a valley.
 
 pub(super) mod circle;
 pub(super) mod events;

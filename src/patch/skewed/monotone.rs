@@ -31,8 +31,7 @@ struct RailStretch<'v> {
 /// Method: the slope of the surface where it is parallel to η is a monotone function of the profile's angle. Bounds of that angle
 /// and of the rail's slope prove that s does not turn over a stretch, or that the stretch does not matter; elsewhere all sign
 /// changes of the angle between the surfaces are found, for polynomials of any degree, over the rail's own parameter where the rail
-/// may stand upright. Cost: two places for most stretches, 16 and
-/// more for those over which the bodies may be parallel.
+/// may stand upright. Cost: two places for most stretches, 16 and more for those over which the bodies may be parallel.
 pub(crate) fn monotone(
     valleys: &Valleys<'_>,
     rail: &Section,
@@ -105,14 +104,15 @@ impl RailStretch<'_> {
         height - self.rail.height(xi)
     }
 
-    /// Returns the sine of the angle between both surfaces along the valley or ridge. Unlike the slope of s it is finite where a
-    /// surface stands upright.
+    /// Returns the sine of the angle between both surfaces along the valley or ridge, times a positive factor. Unlike the slope of s it
+    /// is finite where a surface stands upright.
     fn angle(&self, at: f64) -> f64 {
         let (xi, _, direction) = self.valleys.place(self.leg, at);
         sine_between(direction, &self.rail.station(xi))
     }
 
-    /// Returns the same over the rail's own parameter, of which it is a smooth function where the rail stands upright.
+    /// Returns the sine of the angle between both surfaces, times a positive factor, as a function of the rail's own parameter: it is
+    /// smooth where the rail stands upright.
     fn angle_over_rail(&self, xi: Interval, parameter: f64) -> f64 {
         let rail = self.rail.station_and_curvature(parameter).0;
         let at = self.valleys.parameter(self.leg, xi.nearest(rail.x));
@@ -121,7 +121,8 @@ impl RailStretch<'_> {
     }
 }
 
-/// Returns the sine of the angle between a direction \[dξ, dζ\] of the wheel's surface, times its length, and the rail's tangent.
+/// Returns the sine of the angle between a direction \[dξ, dζ\] of the wheel's surface and the rail's tangent, times the length of the
+/// direction.
 fn sine_between(direction: Vector2<f64>, rail: &Station) -> f64 {
     direction.y * rail.cos - direction.x * rail.sin
 }

@@ -137,7 +137,7 @@ impl ValleyPath {
         let mut grows = true;
         for leg in &self.legs {
             let up = leg.xi[1] > leg.xi[0];
-            // A leg that is no longer than rounding has no direction.
+            // A leg as short as rounding has no direction.
             if !chain.is_empty() && up != grows && (leg.xi[1] - leg.xi[0]).abs() <= rounding {
                 continue;
             }

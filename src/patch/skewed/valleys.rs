@@ -190,14 +190,15 @@ impl<'a> Valleys<'a> {
         (0..self.creases.len()).filter(move |&k| self.creases[k].xi.contains(xi))
     }
 
-    /// Returns whether one valley and no ridge is over a range of ξ \[mm\], throughout.
+    /// Returns whether a single valley lies over a whole range of ξ \[mm\], and no other valley or ridge over any part of it.
     pub(crate) fn is_one_between(&self, xi: Interval) -> bool {
         let mut met = self.creases.iter().filter(|crease| crease.xi.meets(xi));
         let only = met.next().is_some_and(|crease| crease.is_valley && crease.xi.holds(xi));
         only && met.next().is_none()
     }
 
-    /// Returns whether a valley lies at ξ in an interval of η \[mm\], and no other valley or ridge, nor an end or step of the surface.
+    /// Returns whether a valley, and nothing else, lies at ξ in an interval of η \[mm\]: no other valley or ridge, and no end or step of
+    /// the surface.
     pub(crate) fn is_alone_within(&self, valley: usize, xi: f64, eta: Interval) -> bool {
         let alone = self.over(xi).all(|k| (k == valley) == eta.contains(self.spot(k, xi).eta));
         alone && !self.rims(xi).any(|rim| eta.contains(rim))

@@ -8,13 +8,15 @@ use crate::patch::outline::End;
 use crate::patch::window::Window;
 use crate::placement::Placement;
 
-/// Depth \[mm\] of an interval that ends at a tip, not where a body ends: that of two lines a rounding apart. In a crease, whose bottom is
-/// found less exactly, its width \[mm\].
+/// Largest depth \[mm\] of the last interval of a band that counts as ending at a tip and not where a body ends: lines a rounding apart
+/// differ by so much.
 const SHALLOW: f64 = 1e-9;
+/// Width \[mm\] below which the last interval of a band counts as ending at a tip whatever its depth: the bottom of a crease is found
+/// less exactly.
 const NARROW: f64 = 1e-3;
 
-/// Width \[mm\] of such an interval from which on the tip is blunt, as on a flat along which s is level: that of a relative radius of a
-/// kilometre along the track.
+/// Width \[mm\] of the last interval of a band from which on its tip is blunt, as on a flat along which s is level: that of a relative
+/// radius of a kilometre along the track.
 const BLUNT: f64 = 0.1;
 
 /// Returns the bands in a window, and places at which s may be least.
@@ -41,7 +43,7 @@ fn joined(
 ) -> (Vec<Band>, Vec<(usize, f64)>) {
     let ends = [lines.first(), lines.last()].map(|line| line.map_or(f64::NAN, |line| line.xi));
     let (mut bands, mut lanes): (Vec<Band>, Vec<Vec<(f64, LineSlice)>>) = (Vec::new(), Vec::new());
-    // The band of every interval of the line before.
+    // The band of every interval of the previous line.
     let mut current: Vec<usize> = Vec::new();
     let nothing = SlicedLine { xi: ends[0], slices: Vec::new() };
     let pairs = std::iter::once(&nothing).chain(lines).zip(lines);
@@ -116,7 +118,7 @@ fn close(band: &mut Band, xi: f64, end: Option<End>, side: Interval) {
     (band.xi.high, band.ends[1], band.sides[1]) = (xi, end, side);
 }
 
-/// Returns what bounds an interval at its ξ: the window if ξ is its end, the end of the rail, or a tip.
+/// Returns what bounds an interval at its ξ: the window if ξ is its end, the end of a body, or a tip.
 fn bound(found: &LineSlice, xi: f64, [window, reach]: [f64; 2], approach: f64) -> End {
     match () {
         () if xi == window => End::Window,

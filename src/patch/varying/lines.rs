@@ -1,4 +1,5 @@
-//! Lines of constant ξ where a body varies, and the intervals of the patch on them. Over the rail's surface ξ is σ, and s is t + δ (1 − cos α).
+//! Lines of constant ξ where a body varies, and the intervals of the patch on them. Over the rail's surface ξ is σ, and s is
+//! t + δ (1 − cos α).
 //!
 //! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
 //! nearer to each other around C. Where two neighbours differ in the number of their slices, or an end moves far between them,
@@ -16,26 +17,30 @@ use crate::placement::Placement;
 /// Step of the lines of constant ξ \[mm\].
 const STEP: f64 = 0.5;
 
-/// Step along them, as a share of the half-length of the patch of a wheel on a straight rail; its limits \[mm\].
+/// Step along a line of constant ξ, as a share of the half-length √(2Rδ) of the patch of a wheel on a straight rail.
 const SHARE: f64 = 0.125;
+/// Least and largest step along a line of constant ξ near or inside the patch \[mm\].
 const STEPS: [f64; 2] = [0.25, 1.0];
 
-/// Longest step along a line, where s is far above δ \[mm\], and the step as a share of that distance: s falls by less than half of it.
+/// Longest step along a line of constant ξ where s is far above δ \[mm\].
 const STRIDE: f64 = 2.5;
+/// Step along a line of constant ξ as a multiple of s − δ: over it, s falls by less than half of its length.
 const STRIDE_SHARE: f64 = 2.0;
 
-/// How far along the track from C the patch is looked for \[mm\], and as a multiple of that half-length; the farther of the two.
+/// How far along the track from C the patch is looked for at least \[mm\].
 const FARTHEST: f64 = 120.0;
+/// How far along the track from C the patch is looked for at least, as a multiple of the half-length √(2Rδ).
 const FARTHEST_SHARE: f64 = 2.0;
 
 /// How many halvings of a step lie around C.
 const HALVINGS: i32 = 24;
 
-/// By how much ends of intervals move from line to line, as a multiple of the distance of the lines, without more lines between them.
+/// Largest move of an interval's end between two lines, as a multiple of the distance of the lines, without more lines between them.
 const STEEPEST: f64 = 4.0;
 
-/// Points over an interval that a line near by has, and how far beyond its ends, as a share of it.
+/// Number of steps between the points at which s is computed over and beside an interval of a neighbouring line.
 const POINTS: usize = 12;
+/// How far these points go beyond both ends of the interval, as a share of its width.
 const BEYOND: f64 = 0.25;
 
 /// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: nearer to a tip the rounding of s makes intervals
@@ -48,11 +53,12 @@ const MOST_LINES: usize = 20_000;
 /// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
 pub(in crate::patch) const SMOOTH: f64 = 1e-9;
 
-/// Depth \[mm\] of an interval or a dip that is none: rounding of s, below which they come and go.
+/// Largest depth \[mm\] of an interval or a dip that counts as rounding of s.
 const ROUNDING: f64 = 1e-11;
 
-/// Last step to an edge \[mm\], and to a lowest place, where s is flat.
+/// Accuracy of an edge \[mm\].
 const TO_EDGE: f64 = 1e-9;
+/// Accuracy of a lowest place \[mm\], where s is flat.
 pub(super) const TO_LOWEST: f64 = 1e-6;
 
 /// How far an edge is looked for from its estimate, as shares of half the interval's length, the nearest first.
@@ -89,15 +95,15 @@ pub(in crate::patch) struct Varying<'a> {
 impl<'a> Varying<'a> {
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
     pub(in crate::patch) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Self {
-        // Of δ = NaN, where nothing is found, and below 0 the least.
+        // Steps and reach are the least for δ < 0, and for δ = NaN, where nothing is found.
         let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
         let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
         let farthest = FARTHEST.max(FARTHEST_SHARE * half);
         Self { level, approach, step, farthest, lanes: Vec::new() }
     }
 
-    /// Finds the lines over a window, from one end to the other of the range of ξ in which it holds the rail; none if it holds
-    /// nothing of it.
+    /// Finds the lines over a window, from one end to the other of the range of ξ over which the body that varies has a surface, or of σ
+    /// over which the rail has one; none if the window holds nothing of that range.
     pub(super) fn lines(&mut self, placement: &Placement, window: &Window) -> Vec<SlicedLine> {
         let eta = window.eta.cut(self.within());
         let reach = match self.level.normal_gap() {
@@ -206,7 +212,8 @@ impl<'a> Varying<'a> {
         let dips: Vec<usize> = (1..points.len().max(1) - 1)
             .filter(|&k| {
                 let [a, s, b] = [k - 1, k, k + 1].map(|k| points[k][1]);
-                // As far below as a parabola through the three may be, twice; of a stretch that is level, as on a flat, no place is lower.
+                // A parabola through the three, at equal steps, falls below the middle one by at most an eighth of the sum; half of it
+                // is allowed for. A level stretch, as on a flat, has no lower place.
                 let [before, after] = [a - s, b - s];
                 let dip = before >= 0.0 && after >= 0.0 && before.max(after) > ROUNDING;
                 dip && (s - approach < 0.5 * (before + after) || s < approach)
@@ -251,7 +258,7 @@ impl<'a> Varying<'a> {
         change(|eta| self.separation(xi, eta) - approach, [inside, outside], TO_EDGE)
     }
 
-    /// Lays more lines until the intervals of neighbours answer each other, or nothing lies between the lines.
+    /// Adds lines until the intervals of neighbours correspond one to one, or nothing lies between the lines.
     fn refined(&mut self, lines: Vec<SlicedLine>) -> Vec<SlicedLine> {
         let mut out: Vec<SlicedLine> = Vec::with_capacity(2 * lines.len());
         let mut waiting: Vec<SlicedLine> = lines.into_iter().rev().collect();
@@ -282,7 +289,7 @@ pub(super) fn links(a: &SlicedLine, b: &SlicedLine) -> Vec<[usize; 2]> {
     all.filter(|&[i, j]| a.slices[i].eta.overlaps(b.slices[j].eta)).collect()
 }
 
-/// Tells whether the intervals of two lines answer each other one to one, and none has an end that moves by more than a step \[mm\] or
+/// Tells whether the intervals of two lines correspond one to one, and none has an end that moves by more than a step \[mm\] and
 /// [`STEEPEST`] times the distance of the lines: another interval may begin and join it in between.
 fn answer(a: &SlicedLine, b: &SlicedLine, step: f64) -> bool {
     let (count, farthest) = (a.slices.len(), step.max(STEEPEST * (b.xi - a.xi)));
@@ -296,20 +303,20 @@ fn answer(a: &SlicedLine, b: &SlicedLine, step: f64) -> bool {
     }
 }
 
-/// The indices of the rows on both sides of ξ.
+/// Returns the indices of the rows on both sides of ξ.
 fn beside(rows: &[(f64, LineSlice)], xi: f64) -> [usize; 2] {
     let last = rows.len() - 1;
     let after = rows.partition_point(|row| row.0 < xi).min(last);
     [after.saturating_sub(1), after]
 }
 
-/// Adds points over an interval and beyond.
+/// Adds points over an interval of η and beyond its ends.
 fn spread(eta: Interval, out: &mut Vec<f64>) {
     let wide = eta.grown(BEYOND * eta.width());
     out.extend((0..=POINTS).map(|k| wide.step(k, POINTS)));
 }
 
-/// Places in steps over an interval, with its ends; nearer to each other around 0 if that lies inside.
+/// Lists places in steps over an interval, with its ends; nearer to each other around 0 if that lies inside.
 fn places(over: Interval, step: f64) -> Vec<f64> {
     let count = (over.width() / step).ceil().max(1.0) as usize;
     let mut out: Vec<f64> = (0..=count).map(|k| over.step(k, count)).collect();

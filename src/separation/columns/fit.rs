@@ -77,8 +77,8 @@ impl<'a> Fitter<'a> {
     }
 }
 
-/// Appends the coefficients of q over one span in powers of v: at least `least` of them, or at least two over a short span. The
-/// columns end at `u_max` \[mm²\].
+/// Appends the coefficients of q over one span in powers of v: at least `least` of them; over a short span two may do. The columns
+/// end at `u_max` \[mm²\].
 ///
 /// Returns their number and the largest error \[mm\], measured at the end of the span and between its nodes. Returns `None`
 /// if no degree reaches the demand; the span is then close to a vertical tangent.

@@ -51,7 +51,7 @@ const MARGIN: f64 = 0.15;
 /// Growth of the window in which a patch is sought beyond the plane's patch, as a share of its extent.
 const SEARCHED: f64 = 0.5;
 
-/// The three gaps, each with the closure δ cos α or δ by which an approach closes it.
+/// Names of the three gaps. An approach δ closes t and s cos α by δ cos α, and s by δ.
 pub const GAPS: [&str; 3] = ["t", "s", "s cos α"];
 
 /// A conforming pair under its load.
