@@ -48,7 +48,7 @@ pub struct Analysis {
     pub strips: Option<StripMesh>,
     /// The normal gap over the rail's surface, where it is asked for.
     pub conformal: Option<Conformal>,
-    /// The pressures: over the grid if they are asked for, else those of the load; `None` where nothing is pressed.
+    /// The pressures: over the grid if they are asked for, else those of the load; `None` without either, and where nothing is pressed.
     pub pressure: Option<PartPressure>,
     /// Where the time went.
     pub timings: Timings,
@@ -90,8 +90,8 @@ impl Analysis {
     }
 }
 
-/// Refuses a method that has no formula for a placed pair: the Report's needs arcs, the quadratic one a smooth contact, columns a round
-/// wheel.
+/// Refuses a method that has no formula for a placed pair: the quadratic one needs a smooth contact, those by columns a round wheel, and
+/// the Report's knows no yaw, no rollers, no bodies that vary and no wheels of parametric curves.
 ///
 /// # Errors
 /// Says what the pair has that the method does not know, with the place "grid: method".

@@ -15,7 +15,7 @@ pub struct SweepColumn {
     values: ColumnValues,
 }
 
-/// Where a column stands.
+/// Where a column is shown: in the text and the arrays, or in the arrays only.
 #[derive(PartialEq)]
 enum Stands {
     Both,
@@ -68,7 +68,7 @@ const fn number(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> Sweep
     SweepColumn { name, stands: Stands::Both, values: ColumnValues::Number(of, false) }
 }
 
-/// A number whose cell is empty where there is none.
+/// Makes a column of numbers whose cell in the text is empty where there is none.
 const fn perhaps(name: &'static str, of: fn(&SweepRow, [f64; 2]) -> f64) -> SweepColumn {
     SweepColumn { name, stands: Stands::Both, values: ColumnValues::Number(of, true) }
 }
@@ -139,8 +139,8 @@ impl SweepColumns {
         Some(&self.numbers[index])
     }
 
-    /// Appends the row of a contact at the position with this number; `ellipse` is approach or load, and E* \[N/mm²\], of
-    /// Hertz's ellipses.
+    /// Appends the row of a contact at the position with this number. `ellipse` has the approach or load of Hertz's ellipse, and
+    /// E* \[N/mm²\]; without it the semi-axes are NaN.
     pub fn push(
         &mut self,
         position: usize,

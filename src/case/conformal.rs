@@ -1,4 +1,4 @@
-//! The normal gap over the rail's surface, of a case that asks for it, and the warning to one that should.
+//! The normal gap over the rail's surface, and the warning to a case over the plane whose patch turns too much for it.
 
 use serde_json::{Value, json};
 
@@ -20,9 +20,9 @@ pub struct Conformal {
     pub gap: Values,
     /// Largest measured truncation error of t \[mm\].
     pub truncation: f64,
-    /// The patch in the window of the grid; `None` without an approach.
+    /// The patch in the window of the grid; `None` without an approach, and on a grid of one row or column.
     pub patch: Option<Patch>,
-    /// Range of α \[rad\] within each component of the patch.
+    /// Range of the angle α of the rail's normal \[rad\] within each component of the patch.
     pub angles: Vec<Interval>,
 }
 
@@ -93,7 +93,7 @@ pub(super) fn turning_warning(
         Some(((turn(&a) - turn(&b)).abs(), steeper))
     });
     let (turn, at) = turns.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(turn, _)| *turn > MOST_TURN)?;
-    // A tip under skew is off the midplane; the gaps compare there as well.
+    // Under skew a tip lies off the midplane; both gaps are compared at η = 0.
     let s = Evaluator::new(placement).separation(at.xi, 0.0);
     let t = gap.gap(at.sigma, 0.0);
     let own = if t.is_nan() {

@@ -14,7 +14,8 @@ use crate::search::{
     WheelsetOnTrack, active_faces, gauge, geometry_over,
 };
 
-/// Columns of the functions over the lateral displacement, with their definitions. Names that a sweep has mean the same there.
+/// Columns of the functions over the lateral displacement, with their definitions. Names that a sweep has mean the same there, except
+/// `roll_rad` where the roll is neglected: a sweep then has 0.
 pub const FUNCTIONS: [(&str, &str); 17] = [
     ("lateral_mm", "lateral displacement y of the middle of the axle, + to the right"),
     (
@@ -68,7 +69,7 @@ pub const KEY_FIGURES: [(&str, &str); 17] = [
     ("right_wheel_to_mm", "largest x"),
 ];
 
-/// Largest number of displacements to one side, and of gauges: the two-step integration takes the square of it.
+/// Largest number of displacements to one side, and of gauges: the cost of the two-step integration grows with its square.
 const MOST: usize = 10_000;
 
 /// Largest amplitude \[mm\]: no wheel moves so far over its rail.
@@ -96,7 +97,7 @@ impl Default for ConicityOptions {
     }
 }
 
-/// λ over gauge and amplitude.
+/// Equivalent conicity over gauge and amplitude.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConicityMap {
     /// Changes of the gauge \[mm\].
@@ -143,10 +144,10 @@ impl ConicityReport {
 }
 
 /// Finds the contact geometry of the wheelset of a case; its yaw and its displacement are not used, its roll is solved or neglected as
-/// the case says. `told` hears what is being done.
+/// the case says. `told` gets the name of each step.
 ///
 /// # Errors
-/// A case without wheelset; a given roll; options without meaning; samples of which none can be computed.
+/// A case without wheelset, or with bodies that vary; a given roll; options without meaning; samples of which none can be computed.
 pub fn conicity(case: &Case, options: &ConicityOptions, told: &dyn Fn(&str)) -> Result<ConicityReport> {
     let Arrangement::Wheelset { system, position } = &case.setup().arrangement else {
         let expected = "[track] and [wheelset]";
@@ -233,7 +234,8 @@ impl ConicityOptions {
     }
 }
 
-/// Integrates Δr over the displacements and one step beyond each end, so that the largest amplitude has its turning points.
+/// Integrates Δr over the displacements and beyond each end, so that the largest amplitude has its turning points; `None` without
+/// contact around 0.
 fn two_step_of(system: &WheelsetOnTrack, lateral: &[f64], step: f64, roll: Roll) -> Result<Option<TwoStep>> {
     let [Some(first), Some(last)] = [lateral.first(), lateral.last()] else { return Ok(None) };
     // Where the sides differ the movement is not about 0: a turning point lies further out.
@@ -355,7 +357,7 @@ fn key_figures(
     Ok((figures, findings))
 }
 
-/// Clearances of railways \[mm\]: from wheels that just fit to worn flanges on a wide curve.
+/// Clearances of railways \[mm\]: from wheels that just fit to worn flanges in a curve with widened gauge.
 const USUAL_CLEARANCE: std::ops::RangeInclusive<f64> = 0.0..=40.0;
 
 /// Says why there is no conicity.
@@ -388,8 +390,8 @@ fn map(system: &WheelsetOnTrack, options: &ConicityOptions, roll: Roll, gauge: f
     Ok(ConicityMap { gauge_change_mm: options.gauges.clone(), gauge_mm, amplitude_mm, conicity })
 }
 
-/// Longest mean distance \[mm\] of measured points that is not doubted: smoothing halves waves of 5 mm, of which fewer than five points
-/// tell too little.
+/// Longest mean distance \[mm\] of measured points that is not doubted: smoothing halves waves of 5 mm, which fewer than five points do
+/// not describe.
 const FARTHEST_POINTS: f64 = 1.0;
 
 /// Names measured profiles whose points are far apart.

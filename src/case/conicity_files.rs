@@ -101,7 +101,7 @@ pub fn conicity_text(report: &ConicityReport) -> String {
     text
 }
 
-/// Gives the key figures in words.
+/// Gives the key figures with their values as text and their definitions.
 fn figures(report: &ConicityReport) -> Vec<PageFigure> {
     let figure = |((name, meaning), value): (&(&str, &str), f64)| PageFigure {
         name: (*name).into(),
@@ -124,7 +124,7 @@ pub fn conicity_picture(case: &Case, report: &ConicityReport) -> Result<CurvesPi
     drawn(case, report).map(|(picture, _)| picture)
 }
 
-/// Makes the page: the same curves linked to the profiles, the map and the key figures with their definitions.
+/// Makes the page: the curves of [`conicity_picture`] linked to the profiles, the map and the key figures with their definitions.
 ///
 /// # Errors
 /// A case without wheelset.
@@ -200,7 +200,7 @@ fn drawn(case: &Case, report: &ConicityReport) -> Result<(CurvesPicture, SweepCo
     Ok((picture, columns))
 }
 
-/// Gives the map as it is drawn; `None` of one gauge, which is a curve and no map.
+/// Gives the map as it is drawn; `None` of a single gauge or amplitude, which gives a curve and no map.
 fn map(report: &ConicityReport) -> Option<CurvesMap> {
     let of = &report.map;
     let known = of.gauge_mm.iter().all(|gauge| gauge.is_finite());

@@ -13,7 +13,7 @@ use crate::search::{
 /// Amplitude up to which the samples' conicity is tabulated \[mm\]: that of the nonlinearity parameter.
 const REACH: f64 = 4.0;
 
-/// Quantities whose spread under noise is found; those that are key figures have their names.
+/// Quantities whose spread under noise is found. Key figures have their names; places of contact are those at a displacement of 0.
 pub const UNCERTAIN: [&str; 7] = [
     "conicity_3mm",
     "nonlinearity_per_mm",
@@ -102,7 +102,8 @@ impl NoisySide {
         })
     }
 
-    /// Draws a sample of the side; the rail and the wheel stay where they are.
+    /// Draws a sample of the side: new profiles and a new radius, and the rail moved out by half of `widened` \[mm\]; the wheels keep their
+    /// distance.
     fn sample(&self, noise: &Noise, widened: f64, deviates: &mut Deviates) -> Result<SideOnTrack> {
         let of = |body: &Remeasured, own: &Profile, deviates: &mut Deviates| {
             if noise.points > 0.0 { body.sample(noise.points, deviates) } else { Ok(own.clone()) }

@@ -36,7 +36,7 @@ pub struct PlacedContact {
     pub approach: Option<f64>,
     /// Normal force \[N\] of every group of parts of the patch, in their order; empty unless a load was asked for.
     pub normal_loads: Vec<f64>,
-    /// Pressures of every group of parts, from which the normal forces are; empty unless a load was asked for.
+    /// Pressures of every group of parts, whose sums are the normal forces to 0.02 %; empty unless a load was asked for.
     pub pressures: Vec<Pressures>,
     /// Hertz's ellipse under the normal force or the approach; `None` without either, and where s is not convex at C.
     pub ellipse: Option<Ellipse>,

@@ -18,7 +18,7 @@ const OF_POSITION: [OfPosition; 3] = [
     ("Roll", "roll [mrad]", "roll_rad", 1e3, false),
 ];
 
-/// Quantities of each side's lowest contact: heading, axis with unit, column, and whether an angle is shown in degrees.
+/// Quantities of each side's lowest contact: heading, axis with unit, column, and whether it is an angle, shown in degrees.
 const OF_SIDE: [(&str, &str, &str, bool); 3] = [
     ("Contact angle", "θ [°]", "contact_angle_rad", true),
     ("Contact on the rail", "x on the rail [mm]", "rail_x_mm", false),
@@ -89,7 +89,7 @@ pub fn curves(columns: &SweepColumns, lateral: &[f64], title: &str, about: &str)
 }
 
 /// Draws quantities of both sides' lowest contacts (heading, axis with unit, column, factor) over an abscissa with its name. `beside` are
-/// columns that a sweep has not.
+/// columns that a sweep does not have.
 ///
 /// # Errors
 /// Values of the abscissa that do not ascend.
@@ -131,10 +131,10 @@ const USUAL_AMPLITUDE: f64 = 3.0;
 /// Contact angles beyond this \[rad\] are those of flanges and their roots: 30°.
 const FLANGE: f64 = 0.52;
 
-/// Least share of the positions on treads by which panels are scaled.
+/// Least share of positions on treads at which panels are scaled by these positions.
 const MOSTLY: f64 = 0.2;
 
-/// Least length of all values, as a multiple of that on treads, above which the rest is cut off.
+/// Ratio of the range of all values to that on treads above which a panel shows the range on treads only.
 const FLATTENED: f64 = 3.0;
 
 /// Gives the conicity at an amplitude \[mm\], from the line between two positions; `None` outside.

@@ -36,7 +36,7 @@ pub enum DoubtKind {
     Radius,
     /// The gauge does not go with the distance of the flange backs.
     Gauge,
-    /// The gauge is measured elsewhere than below the running surface.
+    /// The gauge is measured at an unusual depth below the top of rail.
     GaugeHeight,
     /// The profile has its flange back elsewhere than the scene says.
     FlangeBackX,
@@ -215,7 +215,7 @@ impl Doubt {
         Self { kind, found: found.into() }
     }
 
-    /// Says a doubt of [`ContactDoubts::list`] for a wheel of a nominal radius \[mm\].
+    /// Makes a doubt of [`ContactDoubts::list`], with its number \[mm\], for a wheel of a nominal radius \[mm\].
     pub fn of_contact(kind: DoubtKind, value: f64, radius: f64) -> Self {
         let on_wheel = format!("x = {value:.2} mm on the wheel");
         let found = match kind {

@@ -194,7 +194,7 @@ fn conformal_patch(part: &Part) -> Option<&Patch> {
     part.analysis.conformal.as_ref()?.patch.as_ref()
 }
 
-/// Gives Hertz's ellipse; `None` where a half-space found δ: nothing has its pressure there.
+/// Gives Hertz's ellipse; `None` without one, and where pressures were solved: Hertz's is then not that of the contact.
 fn hertz(part: &Part) -> Option<Ellipse> {
     part.site.contact.ellipse.filter(|_| part.hertz_pressure().is_some())
 }

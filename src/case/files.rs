@@ -30,7 +30,7 @@ use crate::separation::{LowerBody, midplane_table};
 /// Turns a picture's SVG into PNG. The library draws no pixels: a caller who wants them brings this.
 pub type Rasterise = fn(&str) -> Result<Vec<u8>>;
 
-/// Writes all files that a run's case asks for, part by part, and tells what it is at.
+/// Writes all files that a run's case asks for, on the threads of the current rayon pool, and tells the step that it is at.
 ///
 /// # Errors
 /// The disk's; a format that cannot hold the grid, where the case requires it; a case that asks for PNG without `png`.

@@ -32,13 +32,13 @@ pub(super) enum Writer {
     NetCdf,
     /// s over equal steps in the plane, as text.
     Deck(fn(&Deck<'_>, &mut dyn Write) -> io::Result<()>),
-    /// Likewise, and the strips of the patch.
+    /// s over equal steps in the plane and the strips of the patch, as text.
     StripsDeck(fn(&Deck<'_>, &QuadMesh, &mut dyn Write) -> io::Result<()>),
-    /// Likewise, and an approach or a load.
+    /// s over equal steps in the plane and an approach or a load, as text.
     PressedDeck(fn(&Deck<'_>, &ContactSettings, &mut dyn Write) -> io::Result<()>),
     /// t over equal steps of the rail's surface, as text.
     CurvedDeck(fn(&CurvedDeck<'_>, &mut dyn Write) -> io::Result<()>),
-    /// Likewise, and an approach or a load.
+    /// t over equal steps of the rail's surface and an approach or a load, as text.
     PressedCurvedDeck(fn(&CurvedDeck<'_>, &ContactSettings, &mut dyn Write) -> io::Result<()>),
     /// The boundary of the patch.
     Loops(fn(&Header, &[Loop]) -> Result<Vec<u8>>),
@@ -148,7 +148,7 @@ formats! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
     #[serde(rename_all = "lowercase")]
     pub enum OutputFormat {
-        /// .vts, .vtp, .vtu, .vtk and view.py.
+        /// .vts, .vtp, .vtu, .vtk, .vtm and view.py.
         Vtk = unasked(190.0, &[
             ("separation.vts", Writer::Grid(separation_vts)),
             ("rail.vts", Writer::Grid(rail_vts)),
@@ -168,7 +168,7 @@ formats! {
             ("wheelset.vtm", Writer::InPlace(InPlace::wheelset_vtm)),
             ("view.py", Writer::Text(VIEW_SCRIPT)),
         ]),
-        /// xi.npy, eta.npy, separation.npy, pressure.npy.
+        /// xi.npy, eta.npy, separation.npy, pressure.npy; over the rail's surface also sigma.npy, angle.npy, normal_gap.npy.
         Npy = unasked(8.0, &[
             ("xi.npy", Writer::Grid(|file, _, grid| axis(file, grid.xi()))),
             ("eta.npy", Writer::Grid(|file, _, grid| axis(file, grid.eta()))),
@@ -266,7 +266,7 @@ const OF_EVERY_RUN: [&str; 7] = [
     "conformal.svg",
 ];
 
-/// Collections of the patches of a sweep, and the folder that a Python leaves which imports or compiles view.py.
+/// Collections of the patches of a sweep, and the folder that Python makes where it imports or compiles view.py.
 const BESIDE_RUNS: [&str; 3] = ["surface.pvd", "wheelset.pvd", "__pycache__"];
 
 /// Lists the names of all files that a run may write.

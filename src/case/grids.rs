@@ -142,9 +142,9 @@ fn stretched(axes: &Axes) -> Option<String> {
 pub(super) fn check_memory<'a>(outputs: &Outputs, grids: impl Iterator<Item = &'a Grid>) -> Result<()> {
     /// Bytes of one value of s.
     const NUMBER: usize = 8;
-    /// Bytes of its text, which the decks share.
+    /// Bytes of the text of one value of s, which all decks share.
     const TEXT: usize = 25;
-    /// Below this the system is not asked.
+    /// Bytes up to which the system is not asked.
     const ALWAYS_THERE: usize = 100_000_000;
     let (all, largest) = grids.map(Grid::points).fold((0, 0), |(all, largest), n| (all + n, largest.max(n)));
     let bad = |found: String, expected: String| {

@@ -20,7 +20,7 @@ const RAIL: f64 = 300.0;
 /// Half the arc of a wheel's rim that is shown \[rad\].
 const RIM: f64 = 0.7;
 
-/// How far shells may depart from the bodies \[mm\]: nobody sees it, and a sweep of a hundred positions stays small.
+/// Largest distance of shells from the bodies \[mm\]: too small to be seen, and a sweep of a hundred positions stays small.
 const SHELL: f64 = 0.02;
 
 /// Gives the transform from the contact frame of a part to the axes of the track, of homogeneous coordinates (ξ, η, ζ, 1). On a

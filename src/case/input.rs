@@ -32,7 +32,7 @@ pub struct Case {
     pub(crate) outputs: Outputs,
     pub(crate) echo: Echo,
     pub(crate) file: Option<PathBuf>,
-    /// By what its contacts are doubted.
+    /// Landmarks by which its contacts are judged.
     pub(crate) landmarks: SideLandmarks,
     /// What in the scene looks like a slip: warnings.
     pub(crate) doubts: Vec<Doubt>,
@@ -54,7 +54,8 @@ pub struct SideProfiles {
     pub pair: Pair,
     /// The record of each; `None` for a drawn profile.
     pub measured: Bodies<Option<Record>>,
-    /// The rail's surface where it varies along the track: `pair` then has a section of it.
+    /// The surface of a rail that varies along the track, or of a wheel that varies around its axle: `pair` then has a section of it, or
+    /// the profile before it was made to vary.
     pub varying: Option<LoftedBody>,
 }
 
@@ -80,7 +81,7 @@ impl SideProfiles {
 }
 
 impl Profiles {
-    /// Makes the profiles of both sides from a pair that nothing was measured of.
+    /// Makes the profiles of both sides from one drawn pair.
     pub fn drawn(pair: Pair) -> Self {
         Self { right: SideProfiles { pair, measured: Bodies::default(), varying: None }, left: None }
     }
@@ -105,12 +106,12 @@ impl Profiles {
         Err(Error::new(key, LoftedBody::name(side), expected, advice))
     }
 
-    /// Gives those of a side; a single wheel has the right-hand side's.
+    /// Gives the profiles of a side; a single wheel has the right-hand side's.
     pub fn on(&self, side: Option<TrackSide>) -> &SideProfiles {
         self.left.as_ref().filter(|_| side == Some(TrackSide::Left)).unwrap_or(&self.right)
     }
 
-    /// Gives all there are, with the side where both have their own.
+    /// Lists the profiles of the right-hand side and then of the left, each with its side; one pair without a side where both share it.
     pub fn sides(&self) -> impl Iterator<Item = (Option<TrackSide>, &SideProfiles)> {
         let right = self.left.as_ref().map(|_| TrackSide::Right);
         let left = self.left.iter().map(|left| (Some(TrackSide::Left), left));
@@ -180,12 +181,13 @@ pub enum ApproachBy {
         /// That of the left-hand wheel.
         left: f64,
     },
-    /// δ of every contact is estimated from the vertical load of the axle \[N\]: both wheels sink alike.
+    /// δ of every contact is estimated from the vertical load of the axle \[N\]: both wheels sink alike, or each carries half of it
+    /// where the roll follows the loads.
     AxleLoad(f64),
 }
 
 impl ApproachBy {
-    /// Gives the vertical load of a wheel \[N\], of an axle's half; `None` if the approach is given.
+    /// Gives the vertical load of a wheel \[N\], which is half of an axle's; `None` if the approach is given.
     pub fn of_wheel(self, left_hand: bool) -> Option<f64> {
         match self {
             Self::Given(_) => None,
@@ -231,7 +233,8 @@ pub struct Question {
 /// What is asked of the pressures over a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedPressure {
-    /// Longest side of the cells \[mm\], > 0; `None` takes thirds of the grid's steps, or ninths where those are too long.
+    /// Longest side of the cells \[mm\], > 0; `None` takes thirds of the grid's steps, or ninths where thirds may err by more
+    /// than 1 %.
     pub cell: Option<f64>,
 }
 
@@ -313,7 +316,7 @@ pub struct Echo {
 }
 
 impl Case {
-    /// Names the file that the scene was read from, for the summary.
+    /// Gives the same case with the file that the scene was read from, for the summary.
     #[must_use]
     pub fn read_from(self, path: &Path) -> Self {
         Self { file: path.canonicalize().ok(), ..self }

@@ -9,7 +9,7 @@ use crate::profile::{Profile, trace};
 /// Distance of a profile's points \[mm\].
 const STEP: f64 = 0.5;
 
-/// Most points of a profile, and most lines between contact points: more would be a grey area.
+/// Most points of a profile, and most lines between contact points: more lines would merge into one surface.
 const MOST_POINTS: usize = 1000;
 const MOST_LINES: usize = 80;
 

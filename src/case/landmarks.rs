@@ -17,18 +17,18 @@ const FLANGE: f64 = 10.0;
 /// Height above the lowest point up to which a contact is on the tip \[mm\].
 const TIP: f64 = 2.0;
 
-/// Largest height of an axle's middle \[mm\] that is no doubt, by the heights of both treads over their rails: a wheel that
+/// Largest lift of an axle's middle \[mm\] that raises no doubt, as the mean of both treads' heights over their rails: a wheel that
 /// climbs its flange by two millimetres beyond the clearance lifts it by less.
 const LIFTED: f64 = 8.0;
 
-/// Largest distance of a contact from the flange's tip that is no doubt \[mm\]: 35 mm beyond the taping line, where treads end
-/// in their outer slope, and where only gauges of other wheels lead.
+/// Largest distance of a contact from the flange's tip that raises no doubt \[mm\]: 35 mm beyond the taping line, where treads end
+/// in their outer slope, and where a wheel stands only if the gauge is that of other wheels.
 const RUNNING: f64 = 90.0;
 
 /// Contact angles below this \[rad\] are those of treads: 20°.
 const TREAD: f64 = 0.35;
 
-/// Largest difference of a tread's rolling radius from the nominal one that is no doubt \[mm\].
+/// Largest difference of a tread's rolling radius from the nominal one that raises no doubt \[mm\].
 const RADIUS_OFF: f64 = 15.0;
 
 /// Where a wheel touches its rail, each in its own axes.
@@ -74,7 +74,7 @@ pub struct Landmarks {
     pub(crate) tip: Option<Point2<f64>>,
     /// Range of the abscissae of the wheel's profile \[mm\].
     pub(crate) reach: Interval,
-    /// Height of the profile at its least abscissa over the tip \[mm\].
+    /// Height over the tip \[mm\] of the profile's end at its least abscissa: the largest within 1 mm of it.
     pub(crate) back: f64,
 }
 
@@ -106,7 +106,7 @@ impl Landmarks {
         if height.is_nan() { 0.0 } else { height }
     }
 
-    /// Finds what is doubtful about a contact; `lift` is that of its wheel, `other` that of the other one.
+    /// Finds what is doubtful about a contact; `lift` is that of its wheel \[mm\], `other` that of the other wheel.
     pub(super) fn doubts(&self, at: &Touching, [lift, other]: [f64; 2]) -> ContactDoubts {
         let [x, z] = [at.wheel.x, at.wheel.y];
         let on_tip = self.tip.is_some_and(|tip| z < tip.y + TIP);

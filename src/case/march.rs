@@ -54,7 +54,7 @@ pub struct MarchRow {
     pub row: SweepRow,
     /// Approach δ along its normal \[mm\]; NaN without a load, and where the place is within the region of another one or not closed.
     pub approach: f64,
-    /// Normal force of its region \[N\]; NaN likewise.
+    /// Normal force of its region \[N\]; NaN where `approach` is.
     pub normal_load: f64,
     /// Whether the end of the slices cuts its patch off, so that the approach is too large.
     pub cut_off: bool,
@@ -82,7 +82,7 @@ impl MarchRow {
         Self { row, approach: f64::NAN, normal_load: f64::NAN, cut_off: false }
     }
 
-    /// Takes a place with the region that has its frame.
+    /// Makes the row of a place with the region that has its frame; without one, the row of first touch.
     fn carrying(row: SweepRow, region: Option<&ContactRegion>) -> Self {
         region.map_or(Self::touching(row), |region| Self {
             row,
@@ -94,8 +94,8 @@ impl MarchRow {
 }
 
 impl MarchCase {
-    /// Hands the stops at ascending places of a course to `sink` in order, and the events since the ones before after them; as long as it
-    /// wants more. Under loads the places and the roll are those that the loads settle at; events are those of first touch.
+    /// Hands the stops at ascending places of a course to `sink` in order, and after each block of stops its events, until `sink` returns
+    /// false. Under loads the places and the roll are those that the loads settle at; events are those of first touch.
     ///
     /// It runs on the threads of the current rayon pool; any number of threads gives the same bits. Cost: that of [`March::blocks`];
     /// under loads 0.5 to 2 s more for a stop.

@@ -7,7 +7,7 @@ use super::doubts::DoubtSet;
 use super::march::{MarchCourse, MarchRow, MarchStop};
 use crate::search::{Contact, Event};
 
-/// First line of the table of stops: the columns of a sweep between the place and [`MARCH_NUMBERS`].
+/// Gives the first line of the table of stops: the columns of a sweep between the place and [`MARCH_NUMBERS`].
 pub fn march_head(course: MarchCourse) -> String {
     format!("{},{},{}\n", course.column, SweepColumns::csv_head().trim_end(), MARCH_NUMBERS.join(","))
 }
@@ -22,7 +22,7 @@ pub struct MarchColumns {
     pub along: Vec<f64>,
     /// The columns of a sweep, stops being its positions.
     pub columns: SweepColumns,
-    /// [`MARCH_NUMBERS`]: the others but the pitch are NaN where a place carries nothing of its own.
+    /// The values of [`MARCH_NUMBERS`]; approach and normal force are NaN where a place has no region of its own.
     pub numbers: [Vec<f64>; MARCH_NUMBERS.len()],
 }
 
@@ -93,7 +93,7 @@ pub fn event_numbers(event: &Event) -> [f64; EVENT_NUMBERS.len()] {
     [rail[0], rail[1], wheel[0], wheel[1], y[0], y[1], jump, slope[0], slope[1], impact, gap]
 }
 
-/// First line of the table of events.
+/// Gives the first line of the table of events.
 pub fn events_head(course: MarchCourse) -> String {
     format!("{},side,event,{}\n", course.column, EVENT_NUMBERS.join(","))
 }

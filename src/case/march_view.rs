@@ -18,13 +18,13 @@ const SHOWN: [(&str, &str, &str, f64); 6] = [
     ("Contact angle", "θ [°]", "contact_angle_rad", 180.0 / std::f64::consts::PI),
 ];
 
-/// The same of what it carries.
+/// Quantities of the region of each side's lowest contact under a load: heading, axis with unit, column, factor.
 const CARRIED: [(&str, &str, &str, f64); 2] = [
     ("Approach of the lowest contact", "δ [mm]", MARCH_NUMBERS[1], 1.0),
     ("Normal force of the lowest contact", "F [kN]", MARCH_NUMBERS[2], 1e-3),
 ];
 
-/// Most events that a page lists: more than anybody goes through.
+/// Largest number of events that a page lists; the others are counted.
 const MOST_LISTED: usize = 400;
 
 /// The events of a march that its page lists.
@@ -51,7 +51,7 @@ impl ListedEvents {
     }
 }
 
-/// Puts an event into words.
+/// Gives the row of an event in the list of a page.
 fn page_event(event: &Event, course: MarchCourse) -> PageEvent {
     let number = |value: f64, decimals: usize| match format!("{value:.decimals$}") {
         _ if value.is_nan() => String::new(),
@@ -108,7 +108,7 @@ impl DrawnMarch<'_> {
         over((&self.columns.columns, &beside), (self.course.axis, self.places), &shown, (title, about))
     }
 
-    /// Makes the page: the same curves over a slider along the course, with the sections of rails and wheels at every stop.
+    /// Makes the page: the curves of the picture over a slider along the course, with the sections of rails and wheels at every stop.
     ///
     /// # Errors
     /// Places that do not ascend.

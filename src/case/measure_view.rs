@@ -39,7 +39,7 @@ fn file(
 ) -> MeasuredPage {
     let measures = row.measured.as_ref().ok();
     let over = profile.zip(nominal).zip(row.side);
-    // Why there is none is a finding of the row.
+    // The reason for a missing overlay is a finding of the row.
     let over = over.and_then(|((profile, nominal), side)| overlay(profile, side, nominal, options).ok());
     let alone = || {
         let marks = profile.map_or_else(Vec::new, |profile| trace(profile, STEP));

@@ -20,7 +20,7 @@ pub(super) struct OnRail<'a> {
 }
 
 impl<'a> OnRail<'a> {
-    /// Computes the wheel's normals, too, at every point.
+    /// Takes the rail's surface from the conformal gap, and computes the wheel's normals at every point.
     pub fn new(site: &'a Site, conformal: &'a Conformal) -> Self {
         let (gap, eta) = (NormalGap::new(&site.contact.placement), &site.grid.eta);
         let normal_at = |sigma: f64, eta: f64| {
@@ -51,7 +51,7 @@ impl<'a> OnRail<'a> {
         CurvedFields::new(&self.sigma, fields, &self.wheel_normal)
     }
 
-    /// Gives the rows \[σ, ξ, η_min, η_max\], with their ends that are the window's, of INTERPEN's table over the rail's surface.
+    /// Gives the rows \[σ, ξ, η_min, η_max\] of INTERPEN's table over the rail's surface, each with whether its ends lie at the window's.
     pub fn intervals(&self) -> Vec<([f64; 4], [bool; 2])> {
         let Some(patch) = &self.conformal.patch else { return Vec::new() };
         let window = ends(&self.site.grid.eta);

@@ -89,7 +89,7 @@ impl Overlap {
         self.extent.xi.contains(xi)
     }
 
-    /// Finds the patch under an approach δ \[mm\] in another frame, with the components that are of this part.
+    /// Finds the patch under an approach δ \[mm\] in another frame, with the components that are of this part; with all of them if `alone`.
     pub fn patch(&self, upright: &Placement, placement: &Placement, approach: f64, alone: bool) -> Patch {
         let along = |xi: f64| {
             let there = Point2::new(xi, upright.rail().section().height(xi));

@@ -15,8 +15,8 @@ use crate::placement::Placement;
 use crate::search;
 use crate::search::{NoConicity, ONE_CONTACT, Position, Roll, Selection, SweepRow, TrackSide};
 
-/// Vertical gaps \[mm\] up to which places of contact are looked for at least, one after the other until a load is carried:
-/// what most loads close, and what none does that steel bears.
+/// Vertical gaps \[mm\] up to which places of contact are searched at least, the second only where the first do not carry the load:
+/// most loads close gaps of 1 mm at most, and no load that steel bears closes 10 mm.
 const SEARCHED_GAPS: [f64; 2] = [1.0, 10.0];
 
 /// Vertical displacement of a wheel for an approach of 1 along the normal of a flange of 75°; flanges are not steeper.
@@ -35,8 +35,8 @@ struct TouchedSide {
     places: Vec<search::Contact>,
 }
 
-/// Places the pair at every contact of a case, the first one first, with their names; computes no grid and no patch but
-/// those that tell contacts apart.
+/// Places the pair at every contact of a case, the first one first, with their names. It computes no grid, and only the patches that tell
+/// contacts apart and the pressures that carry a load.
 ///
 /// # Errors
 /// No contact, or more than are listed; a load that no approach carries.
@@ -103,8 +103,8 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact
     contacts.collect::<Result<Vec<_>>>().map(|all| all.into_iter().flatten().collect())
 }
 
-/// Finds the places of a wheelset's contact under the loads of a case, the left side's first, with what their regions carry: those within
-/// the reach of near misses, and those that carry.
+/// Finds the places of a wheelset's contact under the loads of a case, the left side's first: those that have a region, with it, and those
+/// within the largest gap of near misses.
 ///
 /// # Errors
 /// No contact; a load that no approach carries; no roll that the loads settle at.
@@ -165,21 +165,21 @@ fn closed(
     Err(too_heavy(case, heavy))
 }
 
-/// Most rolls that are tried for the loads. On treads three suffice: what the wheels sink by hardly depends on the roll.
+/// Most rolls that are tried under the loads. On treads three suffice: the wheels' vertical displacements hardly depend on the roll.
 const MOST_ROLLS: usize = 64;
 
-/// Steps of the roll \[rad\] over which the difference of heights still has a slope: what their rounding changes is less than
-/// a hundredth of it.
+/// Least step of the roll \[rad\] from which the slope of the difference of heights is taken: rounding changes it by less than a
+/// hundredth.
 const SLOPE_OVER: f64 = 1e-8;
 
-/// Largest step of the roll that is left \[rad\]: it lifts a wheel by 1e-9 mm.
+/// Largest next step of the roll at which the search ends \[rad\]: it lifts a wheel by 1e-9 mm.
 const SETTLED_ROLL: f64 = 1e-12;
 
 /// Lowers the wheels, and finds the regions under an approach, at the roll at which each wheel carries its load if that is asked
-/// for: the middle of the axle is then as high over one rail as over the other.
+/// for: both sides then give the middle of the axle one height.
 ///
 /// # Errors
-/// No contact; no roll at which the heights agree to [`SETTLED_ROLL`] in time, as where a steep flange carries.
+/// No contact; no roll at which the heights agree to [`SETTLED_ROLL`] in [`MOST_ROLLS`] tries, as where two places become one region.
 fn sunk(
     case: &Case,
     approach: Option<ApproachBy>,
@@ -202,11 +202,11 @@ fn sunk(
         let (Ok(carried), [right, left]) = (&found, sides.as_slice()) else { break };
         let heights = [right, left].map(|side| side.height);
         let sunk = [0, 1].map(|k| carried[k].first().map_or(0.0, ContactRegion::sunk));
-        // A turn about the axle's middle lifts a contact by its lever, and a steep one by what it moves aside.
+        // A roll about the axle's middle lifts a contact by its lever arm, and a steep one also by its lateral movement.
         let steep = |side: &TouchedSide| side.places[0].rolling_radius * side.places[0].contact_angle.tan();
         let lever = spread + right.places[0].rail_x + left.places[0].rail_x - steep(right) - steep(left);
         let (here, miss) = (right.roll, (heights[1] - sunk[1]) - (heights[0] - sunk[0]));
-        // Where a steep flange carries, what the wheels sink by depends on the roll as well: a secant knows.
+        // Where a steep flange carries, the vertical displacements depend on the roll as well: a secant includes that.
         let slope = match before {
             Some((there, missed, _)) if f64::abs(here - there) > SLOPE_OVER => {
                 (missed - miss) / (here - there)
@@ -318,7 +318,7 @@ fn regions(case: &Case, sides: &[TouchedSide], approach: Option<ApproachBy>, mos
     Ok(Ok(all))
 }
 
-/// Gives the body of a side that varies.
+/// Gives the body that varies on a side, and where the wheel stands; `None` where none varies.
 fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
     let body = case.profiles.on(side).varying.as_ref()?;
     let along = case.setup.along;
@@ -357,7 +357,7 @@ fn unborne(key: &str, load: f64, side: Option<TrackSide>) -> Error {
 }
 
 impl TouchedSide {
-    /// Makes contacts of the regions; without any, which is without an approach, of the places within reach.
+    /// Makes contacts of the regions; without an approach there are none, and the places within the largest gap of near misses are taken.
     fn contacts(&self, case: &Case, regions: Vec<ContactRegion>, load_s: f64) -> Result<Vec<PlacedContact>> {
         let within = case.setup.within;
         let modulus = case.question.modulus();

@@ -7,7 +7,7 @@ use crate::profile::{Profile, Station, trace};
 /// Distance of a profile's points \[mm\].
 const STEP: f64 = 0.25;
 
-/// Most points of a profile, which only measured ones have more of.
+/// Most points of a profile; only measured profiles have more.
 const MOST_POINTS: usize = 1200;
 
 /// Largest distance \[mm\] of a section from the fewer points that it is drawn by: far less than a pixel shows.
@@ -51,7 +51,9 @@ pub(super) fn page_cut(pieces: &[Vec<[f64; 2]>]) -> PageCut {
     PageCut(out)
 }
 
-/// Leaves out points of a polyline that lie within a distance of the lines between those that stay, the farthest of which stay first.
+/// Simplifies a polyline: points that are left out lie within a distance \[mm\] of the line between those that stay beside them.
+///
+/// Method: Ramer, Douglas and Peucker's, which keeps the farthest point first.
 fn simplified(points: &[[f64; 2]], within: f64) -> Vec<[f64; 2]> {
     let mut stays = vec![false; points.len()];
     let mut open = vec![[0, points.len().saturating_sub(1)]];

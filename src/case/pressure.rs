@@ -17,7 +17,7 @@ const SETTLED: f64 = 1e-4;
 const DOUBTFUL: f64 = 0.01;
 
 /// Parts into which the steps of a grid are divided; an odd number leaves every point of the grid in the middle of a cell. On the
-/// steps themselves the largest pressure was off by 3 % where profiles have joints, and its estimate did not show it.
+/// steps themselves the largest pressure errs by 3 % where profiles have joints, and its estimate does not show it.
 const FINER: usize = 3;
 
 /// Most cells that are made unasked: they take half a second.
@@ -79,7 +79,8 @@ pub struct PartPressure {
     pub field: Option<Vec<f64>>,
     /// The edges of the true contact: lines in ξ and η \[mm\].
     pub outline: Vec<Vec<[f64; 2]>>,
-    /// What the cells of the grid do to the largest pressure; `None` on grids that are not automatic.
+    /// The largest pressure on the cells of the grid beside that on finer ones; `None` on grids that are not automatic, and where they have
+    /// too many cells or pressures do not settle.
     pub on_grid: Option<OnGrid>,
 }
 
@@ -186,8 +187,8 @@ impl PartPressure {
         self.largest_error > DOUBTFUL * self.largest.pressure_n_per_mm2
     }
 
-    /// Says how little the largest pressure is known, where it was asked for and may err by more than 1 %, and what the cells of the
-    /// grid do to it, where that is more than 2 %.
+    /// Says by how much the largest pressure may err, where it was asked for and that is more than 1 %, and by how much it differs on the
+    /// cells of the grid, where that is more than 2 %.
     pub(super) fn warnings(&self) -> Vec<String> {
         let (p, error) = (self.largest.pressure_n_per_mm2, self.largest_error);
         let [xi, eta] = self.cell;
@@ -254,8 +255,8 @@ fn odd_above(ratio: f64) -> usize {
     2 * ((ratio - 1.0) / 2.0).ceil().max(0.0) as usize + 1
 }
 
-/// Gives how far the bodies overlap in every cell, without what other contacts of the wheel have pressed down. Under a load the
-/// overlap of other contacts is theirs.
+/// Gives how far the bodies overlap in every cell, less what other contacts of the wheel have pressed down. Under a load, cells outside
+/// of the parts that the grid covers have no overlap: it belongs to other contacts.
 fn overlap(contact: &PlacedContact, grid: &Grid, cells: Cells) -> Result<HalfSpace> {
     let known: Vec<&Pressures> = covered(contact, grid).collect();
     // Parts that share a grid press upon each other there.

@@ -42,7 +42,7 @@ pub fn about_profile(profile: &Profile, record: Option<&Record>) -> String {
     out + &format!("{SEPARATOR}{segments} segments")
 }
 
-/// Returns \[s, distance of the point to the left of the curve\] \[mm\] for every point.
+/// Returns \[arc length s, distance to the left of the curve\] \[mm\] for every point.
 fn residual(marks: &[Mark], points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut hint = 0;
     let residual = |point: &[f64; 2]| {

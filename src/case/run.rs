@@ -178,8 +178,8 @@ impl Part {
     }
 }
 
-/// Distance along the track \[mm\] up to which a patch reaches a slice: a point of it lies some tenths of a millimetre above or below the
-/// tangent plane, which pitches by a tenth at most.
+/// Distance along the track \[mm\] within which a patch counts as reaching a slice: a point of it lies some tenths of a millimetre above or
+/// below the tangent plane, which pitches by a tenth at most.
 const AT_SLICE: f64 = 0.1;
 
 /// Gives the end of the slices \[mm\] that a patch on a rail that varies along the track reaches: there is no surface beyond.

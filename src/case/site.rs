@@ -95,8 +95,8 @@ impl Site {
         self.contact.patch_in(&self.window())
     }
 
-    /// Tells whether the bodies overlap before any approach. A further contact of a side is closed by the approach only, and the
-    /// first one overlaps by that approach: only first ones can be infeasible.
+    /// Tells whether the bodies overlap before any approach. Only the first contact of a side can be infeasible: a further one is placed as
+    /// touching, which makes the bodies overlap at the first.
     pub fn is_infeasible(&self) -> bool {
         let first = self.contact.found.as_ref().is_none_or(|found| found.contact == 1);
         first && !self.contact.feasibility.feasible
@@ -129,7 +129,7 @@ impl Site {
     }
 }
 
-/// First and last value.
+/// Gives the first and the last value.
 pub(super) fn ends(values: &[f64]) -> Interval {
     match values {
         [first, .., last] => Interval::new(*first, *last),
@@ -138,7 +138,7 @@ pub(super) fn ends(values: &[f64]) -> Interval {
     }
 }
 
-/// Tells which ends of an interval of η are those of the window's.
+/// Tells which ends of an interval of η lie at those of the window.
 pub(super) fn cut_by(window: Interval, eta: Interval) -> [bool; 2] {
     [eta.low <= window.low, eta.high >= window.high]
 }

@@ -39,7 +39,7 @@ pub(super) fn doubts_of(site: &Site, landmarks: &SideLandmarks, other: f64) -> V
     out
 }
 
-/// Doubts the way that bodies are placed.
+/// Gives the doubt about points chosen at tangents that differ; `None` where a search finds the contacts.
 pub(super) fn doubts_of_placing(case: &Case, site: &Site) -> Option<Doubt> {
     let Arrangement::Points { .. } = case.setup.arrangement else { return None };
     usual::tilt("contact", &site.contact.placement)

@@ -42,7 +42,7 @@ struct ClosingSummary {
     reach_mm: f64,
 }
 
-/// Kinks below this are not worth a reader's time \[rad\].
+/// Kinks up to this are not listed \[rad\].
 const SMOOTH: f64 = 1e-9;
 
 /// The meshes that were written.
@@ -166,7 +166,7 @@ fn relative_motion(creepages: Creepages) -> Value {
     })
 }
 
-/// Gives Hertz's ellipse, whose pressure is null where pressures were solved: nothing has that one there.
+/// Gives Hertz's ellipse; its pressure is null where pressures were solved, since it is then not that of the contact.
 fn hertz(part: &Part) -> Option<Value> {
     let mut ellipse = json!(part.site.contact.ellipse?);
     ellipse["pressure_n_per_mm2"] = json!(part.hertz_pressure());

@@ -32,7 +32,7 @@ pub(super) struct Shown<'a> {
     pub stands: &'a dyn Fn(f64) -> [f64; 2],
     /// Normal force of the region of each contact \[N\]; `None` where none is known.
     pub loads: Option<&'a [f64]>,
-    /// What holds the exact numbers: "sweep".
+    /// Name of the table that holds the exact numbers: "sweep" or "march".
     pub table: &'a str,
 }
 
@@ -48,7 +48,7 @@ pub fn sweep_page(
     lateral: &[f64],
     about: &str,
 ) -> Result<SweepPage> {
-    // The title of the scene may name its one position.
+    // Not the title of the scene, which may name its one position.
     let picture = curves(columns, lateral, &case.profiles.right.names(), about)?;
     Ok(page_of(&swept(case, system, columns, lateral), picture))
 }
@@ -108,7 +108,7 @@ fn panel(panel: CurvesPanel) -> SweepPanel {
 }
 
 impl Shown<'_> {
-    /// Says what stands at all positions, and then what the picture says.
+    /// Says what is the same at all positions, and then what the picture says.
     fn about(&self, picture: &str) -> String {
         let mut said = about_bodies(self.scene);
         let yaws = self.columns.quantity("yaw_rad").unwrap_or_default();

@@ -14,12 +14,12 @@ const FILES: [&str; 3] = ["table.wrp", "table.nc", "table.csv"];
 pub const TABLE_FOLDER: Names =
     Names { marker: FILES[0], is_file: |name| FILES.contains(&name), is_part: |_| false };
 
-/// Tabulates the contact of a case's wheelset over a range of lateral displacements \[mm\] and of yaws \[rad\], without which it is under
-/// the case's yaw, with the case's roll; `tolerance` is that of lengths \[mm\]. `hertz` adds Hertz's ellipses under the case's approach or
+/// Tabulates the contact of a case's wheelset over a range of lateral displacements \[mm\] and of yaws \[rad\] (`None` takes the case's
+/// yaw), with the case's roll; `tolerance` is that of lengths \[mm\]. `hertz` adds Hertz's ellipses under the case's approach or
 /// load, as if the lowest place carried its wheel alone.
 ///
 /// # Errors
-/// A single wheel; a roll by the wheels' loads; ellipses without an approach or load; the errors of [`build`].
+/// A single wheel; bodies that vary; a roll by the wheels' loads; ellipses without an approach or load; the errors of [`build`].
 pub fn table(
     case: &Case,
     lateral: Interval,

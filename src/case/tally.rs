@@ -16,7 +16,7 @@ pub struct Tally {
 #[derive(Debug, Clone, Copy, Default)]
 struct Kind {
     positions: usize,
-    /// Largest number \[mm\], the lateral displacement \[mm\] and the side that it belongs to.
+    /// The number of largest magnitude \[mm\], and the lateral displacement \[mm\] and the side that it belongs to.
     worst: Option<(f64, f64, TrackSide)>,
 }
 

@@ -10,23 +10,23 @@ use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Profile, trace};
 
-/// Steepest inclination that is no doubt \[rad\]: 1:5.
+/// Steepest inclination that raises no doubt \[rad\]: 1:5.
 const STEEPEST: f64 = 0.2;
 
-/// Steepest inclination of a rail away from the middle of the track that is no doubt \[rad\]: 1:100, what a measured profile may be
-/// turned back by.
+/// Steepest inclination of a rail away from the middle of the track that raises no doubt \[rad\]: 1:100; a measured profile may be
+/// turned back by as much.
 const OUTWARDS: f64 = 0.01;
 
-/// Largest yaw or roll that is no doubt \[rad\]: almost 6°.
+/// Largest yaw or roll that raises no doubt \[rad\]: almost 6°.
 const LARGE_ANGLE: f64 = 0.1;
 
-/// Least load of a wheel or axle that is no doubt \[N\].
+/// Least load of a wheel or axle that raises no doubt \[N\].
 const LIGHT: f64 = 1000.0;
 
 /// Moduli of what wheels and rails are made of, E or E* \[N/mm²\].
 const MODULI: RangeInclusive<f64> = 1e4..=1e6;
 
-/// Largest kink between drawn segments that is no doubt \[degrees\].
+/// Largest kink between drawn segments that raises no doubt \[degrees\].
 const KINK: f64 = 5.0;
 
 /// Nominal radii of railway wheels \[mm\], from wagons for lorries (180) to locomotives (625).
@@ -46,17 +46,18 @@ const GAUGE_HEIGHTS: RangeInclusive<f64> = 5.0..=30.0;
 /// some 10 mm.
 const BACK: [f64; 2] = [5.0, 10.0];
 
-/// Largest speed that is no doubt \[m/s\]: 360 km/h.
+/// Largest speed that raises no doubt \[m/s\]: 360 km/h.
 const FAST: f64 = 100.0;
 
-/// Approaches outside of this range \[mm\] are no elastic ones: steel yields at a tenth of the larger one, and no load that a
-/// wheel carries makes the smaller one.
+/// Approaches that are elastic \[mm\]: steel yields at a tenth of the larger end, and no load that a wheel carries makes one as small
+/// as the smaller end.
 const APPROACHES: RangeInclusive<f64> = 1e-3..=1.0;
 
-/// Largest difference of the tangents at chosen points that is no doubt \[degrees\]: wheels roll by less.
+/// Largest difference of the tangents at chosen points that raises no doubt \[degrees\]: wheels roll by less.
 const TILT: f64 = 2.0;
 
-/// Doubts a turn of a profile \[rad\] that is steeper than any inclination; of a `rail` also one away from the middle of the track.
+/// Gives the doubt about a turn of a profile \[rad\] beyond ±0.2 rad, which is steeper than any inclination; of a `rail` also about one
+/// away from the middle of the track by more than 0.01 rad.
 pub fn turn(place: &str, turn: f64, rail: bool) -> Option<Doubt> {
     if turn.abs() > STEEPEST {
         let found = format!("{place}: {turn} rad is {:.1} degrees, steeper than 1:5", turn.to_degrees());
@@ -66,44 +67,44 @@ pub fn turn(place: &str, turn: f64, rail: bool) -> Option<Doubt> {
     (rail && turn < -OUTWARDS).then(|| Doubt::new(DoubtKind::Outwards, found()))
 }
 
-/// Doubts a yaw or roll \[rad\].
+/// Gives the doubt about a yaw or roll beyond ±0.1 rad.
 pub fn angle(place: &str, angle: f64) -> Option<Doubt> {
     let found = || format!("{place}: {angle} rad is {:.1} degrees", angle.to_degrees());
     (angle.abs() > LARGE_ANGLE).then(|| Doubt::new(DoubtKind::Angle, found()))
 }
 
-/// Doubts the load \[N\] of a wheel or axle.
+/// Gives the doubt about the load of a wheel or axle above 0 and below 1000 N.
 pub fn load(place: &str, load: f64) -> Option<Doubt> {
     let found = || format!("{place}: {load} N is the weight of {:.1} kg", load / 9.81);
     (load > 0.0 && load < LIGHT).then(|| Doubt::new(DoubtKind::Load, found()))
 }
 
-/// Doubts a modulus of elasticity \[N/mm²\].
+/// Gives the doubt about a modulus of elasticity outside of 1e4 to 1e6 N/mm².
 pub fn modulus(place: &str, modulus: f64) -> Option<Doubt> {
     let found = || format!("{place}: {modulus:e} N/mm² is no metal's");
     (!MODULI.contains(&modulus)).then(|| Doubt::new(DoubtKind::Modulus, found()))
 }
 
-/// Doubts a speed \[m/s\].
+/// Gives the doubt about a speed beyond ±100 m/s.
 pub fn speed(place: &str, speed: f64) -> Option<Doubt> {
     let found = || format!("{place}: {speed} m/s is {} km/h", 3.6 * speed);
     (speed.abs() > FAST).then(|| Doubt::new(DoubtKind::Speed, found()))
 }
 
-/// Doubts the depth \[mm\] at which a gauge is measured.
+/// Gives the doubt about a depth outside of 5 to 30 mm at which a gauge is measured.
 pub fn gauge_height(place: &str, height: f64) -> Option<Doubt> {
     let found = || format!("{place}: {height} mm below the top of rail");
     (!GAUGE_HEIGHTS.contains(&height)).then(|| Doubt::new(DoubtKind::GaugeHeight, found()))
 }
 
-/// Doubts a gauge beside the distance of the flange backs \[mm\].
+/// Gives the doubt about a gauge that is not 40 to 110 mm more than the distance of the flange backs \[mm\].
 pub fn gauge([place, back_place]: [&str; 2], gauge: f64, back_to_back: f64) -> Option<Doubt> {
     let play = gauge - back_to_back;
     let found = || format!("{place}: {gauge} mm is {play} mm more than {back_place}");
     (!PLAY.contains(&play)).then(|| Doubt::new(DoubtKind::Gauge, found()))
 }
 
-/// Doubts the nominal radius of a wheel \[mm\], and names the units that it may be in.
+/// Gives the doubt about the nominal radius of a wheel outside of 150 to 700 mm, with the units that it may be in.
 pub fn radius(place: &str, radius: f64) -> Option<Doubt> {
     if RADII.contains(&radius) {
         return None;
@@ -116,7 +117,7 @@ pub fn radius(place: &str, radius: f64) -> Option<Doubt> {
     Some(Doubt::new(DoubtKind::Radius, found))
 }
 
-/// Doubts a wheel whose flange is at its field side.
+/// Gives the doubt about a wheel whose flange is at its field side; `None` of a wheel without flange.
 pub fn flange_side(place: &str, marks: &Landmarks) -> Option<Doubt> {
     let (tip, left) = (marks.tip?, marks.reach.low);
     let found =
@@ -124,7 +125,7 @@ pub fn flange_side(place: &str, marks: &Landmarks) -> Option<Doubt> {
     (tip.x > left + marks.reach.width() / 2.0).then(|| Doubt::new(DoubtKind::FlangeSide, found()))
 }
 
-/// Doubts the abscissa of a flange back \[mm\] where the wheel's profile shows another one.
+/// Gives the doubt about the abscissa of a flange back \[mm\] where the wheel's profile shows another one, more than 10 mm away.
 pub fn flange_back_x([place, wheel]: [&str; 2], x: f64, marks: &Landmarks) -> Option<Doubt> {
     let ([height, off], left) = (BACK, marks.reach.low);
     let shown = marks.tip.is_some() && marks.back > height && flange_side(wheel, marks).is_none();
@@ -132,7 +133,7 @@ pub fn flange_back_x([place, wheel]: [&str; 2], x: f64, marks: &Landmarks) -> Op
     (shown && (x - left).abs() > off).then(|| Doubt::new(DoubtKind::FlangeBackX, found()))
 }
 
-/// Doubts the kinks of a drawn profile.
+/// Lists the doubts about kinks of more than 5° of a drawn profile.
 pub fn kinks(place: &str, profile: &Profile) -> Vec<Doubt> {
     let sharp = profile.continuity().into_iter().filter(|joint| joint.kink.to_degrees().abs() > KINK);
     let doubt = |joint: crate::profile::Joint| {
@@ -143,8 +144,8 @@ pub fn kinks(place: &str, profile: &Profile) -> Vec<Doubt> {
     sharp.map(doubt).collect()
 }
 
-/// Doubts an approach \[mm\]. One `estimated` from a load is as small as the load, which has a doubt of its own; 0 asks for the
-/// geometry.
+/// Gives the doubt about an approach outside of 1e-3 to 1 mm. A small one that is `estimated` from a load raises none, since the load
+/// has its own; nor does 0, which asks for the geometry.
 pub fn approach(rail: &Profile, approach: f64, estimated: bool) -> Option<Doubt> {
     if !estimated && approach > 0.0 && approach < *APPROACHES.start() {
         let in_m = 1e3 * approach;
@@ -159,7 +160,7 @@ pub fn approach(rail: &Profile, approach: f64, estimated: bool) -> Option<Doubt>
     Some(Doubt::new(DoubtKind::Approach, format!("an approach of {approach:.4} mm{beyond}")))
 }
 
-/// Doubts points chosen at tangents that differ.
+/// Gives the doubt about chosen points whose tangents differ by more than 2°.
 pub fn tilt(place: &str, placement: &Placement) -> Option<Doubt> {
     let angles = [placement.rail(), placement.wheel()].map(|body| body.contact_angle().to_degrees());
     let tilt = angles[0] - angles[1];
@@ -167,7 +168,7 @@ pub fn tilt(place: &str, placement: &Placement) -> Option<Doubt> {
     (tilt.abs() > TILT).then(|| Doubt::new(DoubtKind::Tilt, found()))
 }
 
-/// Doubts the way that a wheel stands on its rail, by the landmarks of the pair. `other` is the height \[mm\] of the other
+/// Lists the doubts about the way that a wheel stands on its rail, by the landmarks of the pair. `other` is the height \[mm\] of the other
 /// wheel's tread over its rail, 0 for a single wheel.
 pub fn standing(marks: &Landmarks, placement: &Placement, other: f64) -> Vec<Doubt> {
     let touching = Touching::from(placement);

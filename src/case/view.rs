@@ -12,7 +12,7 @@ use crate::patch::{Component, Patch, Window};
 use crate::search::TrackSide;
 use crate::separation::{EtaAxis, Evaluator, Values, plan};
 
-/// Contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
+/// Most contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
 const MOST_SHOWN: usize = 16;
 
 /// Points of a page's grid along ξ and along η, for up to four contacts. Boundaries by linear interpolation are then within
@@ -237,7 +237,7 @@ fn on_plane(rail: &RailArcLength<'_>, [sigma, eta]: [f64; 2]) -> [f64; 2] {
     [rail.point(sigma).map_or(f64::NAN, |at| at.xi), eta]
 }
 
-/// Gives the loops around a patch, with `placed` points.
+/// Gives the loops around a patch, thinned, with every point moved by `placed`.
 fn boundary(patch: &Patch, placed: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<PageLoop> {
     let loops = || patch.components.iter().flat_map(|c| [&c.boundary].into_iter().chain(&c.holes));
     let all: usize = loops().map(Vec::len).sum();
@@ -269,7 +269,7 @@ fn pressure(part: &Part) -> Option<PagePressure> {
     })
 }
 
-/// Gives the rows of the table.
+/// Gives the facts of a contact as rows of label and text.
 fn facts(part: &Part) -> Vec<[String; 2]> {
     let row = |fact: &Fact| {
         let value = format!("{} {}", fact.text(part)?, fact.unit);
@@ -278,7 +278,7 @@ fn facts(part: &Part) -> Vec<[String; 2]> {
     FACTS.iter().filter_map(row).collect()
 }
 
-/// Gives numbers their true minus sign; hyphens of words stay.
+/// Writes a minus sign before negative numbers instead of a hyphen; hyphens of words stay.
 pub(super) fn with_minus(text: &str) -> String {
     let mut before = ' ';
     let mark = |(at, c): (usize, char)| {

@@ -2,7 +2,7 @@
 //!
 //! One unknown, how far the wheel sinks, gives every approach: a place of contact whose vertical gap at first touch is g
 //! closes by δ = (sunk − g) cosθ along its own normal. Places whose patches overlap are one region, in the frame of the one that
-//! touches first. The normal forces of all regions add up vertically: Σ F cosθ is the load.
+//! touches first or in that of the overlap's centre. The normal forces of all regions add up vertically: Σ F cosθ is the load.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ const USUAL_APPROACH: f64 = 0.05;
 /// Largest violation of contact's conditions that pressures may leave, relative to δ: the load errs by less than 0.05 %.
 pub(super) const SETTLED: f64 = 3e-4;
 
-/// Demand on the load that wheels carry, relative: below the error of the cells.
+/// Tolerance on the load that wheels carry, relative: below the error of the cells.
 const CARRIED: f64 = 2e-4;
 
 /// A body that varies, and where the wheel stands.
@@ -144,12 +144,12 @@ impl ContactRegion {
         self.extents.first().is_some_and(|extent| extent.contains(xi, eta))
     }
 
-    /// Gives the vertical displacement of the wheel \[mm\], + down, from the region that touches first.
+    /// Gives the vertical displacement of the wheel \[mm\], + down, if this is the region of the place that touches first.
     pub(super) fn sunk(&self) -> f64 {
         self.approach / self.placement.upright()
     }
 
-    /// Gives the vertical force \[N\].
+    /// Gives the vertical part of the normal forces \[N\].
     fn vertical(&self) -> f64 {
         self.loads.iter().sum::<f64>() * self.placement.upright()
     }
@@ -191,7 +191,7 @@ impl<'a> SinkingWheel<'a> {
     /// Finds the regions under an approach δ \[mm\] of the first place; the first region is that place's.
     ///
     /// # Errors
-    /// A place at which the pair cannot be placed.
+    /// A place at which the pair cannot be placed; in weighted frames also a wheel with yaw over a roller, and a body that varies.
     pub(super) fn regions(&mut self, first_approach: f64) -> Result<Vec<ContactRegion>> {
         let sunk = self.places.first().map_or(0.0, |first| first_approach / first.cos);
         if self.rules.frame == FrameOrigin::Weighted {
@@ -221,7 +221,7 @@ impl<'a> SinkingWheel<'a> {
     /// do not overlap by more than rounding.
     ///
     /// # Errors
-    /// A place at which the pair cannot be placed; a wheel with yaw over a roller.
+    /// A place at which the pair cannot be placed; a wheel with yaw over a roller; a body that varies.
     fn weighted(&mut self, sunk: f64) -> Result<Vec<ContactRegion>> {
         let upright = match self.upright.take() {
             Some(upright) => upright,
@@ -325,7 +325,7 @@ fn upright(placement: &Placement) -> Result<Placement> {
 /// Accuracy: see the table in [`docs::loads`](crate::docs::loads). Cost: three half-spaces and patches a region.
 ///
 /// # Errors
-/// A place at which the pair cannot be placed.
+/// The errors of [`SinkingWheel::regions`]; pressures that do not settle.
 pub(super) fn carry(
     wheels: &mut [SinkingWheel<'_>],
     load: f64,
@@ -355,7 +355,7 @@ pub(super) fn carry(
     };
     let vertical =
         |all: &[Vec<ContactRegion>]| all.iter().flatten().map(ContactRegion::vertical).sum::<f64>();
-    // What was found is mostly what was looked at last.
+    // The solution is mostly the last trial.
     let mut last = (f64::NAN, Vec::new());
     let total = |sunk| {
         last = (sunk, sink(sunk));
@@ -370,7 +370,7 @@ pub(super) fn carry(
         let scale = load / vertical(&all);
         for regions in &mut all {
             regions.iter_mut().flat_map(|region| &mut region.loads).for_each(|load| *load *= scale);
-            // What the others press down by more than it overlaps does not touch.
+            // A region that the others press down by more than its overlap does not touch.
             let mut first = true;
             regions.retain(|region| std::mem::take(&mut first) || region.vertical() > 0.0);
         }

@@ -79,7 +79,7 @@ pub(super) fn wheelsets(path: &Path) -> Result<Vec<ListedWheelset>> {
 /// Lists the rail sections of a folder, a file or a built-in name; both rails of a track have the same.
 ///
 /// # Errors
-/// A folder without files; a name that is neither.
+/// A folder without files; a name that is neither a folder, a file nor a built-in rail.
 pub(super) fn rails(name: &str) -> Result<Vec<Source>> {
     let path = Path::new(name);
     if path.is_dir() {

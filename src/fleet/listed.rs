@@ -17,7 +17,7 @@ pub(super) struct Listed {
 }
 
 impl Listed {
-    /// What is possible in the shared scene but seldom meant.
+    /// Lists what is allowed in the keys of the shared scene but seldom meant.
     pub fn warnings(&self) -> Vec<String> {
         scene::doubts_of_keys(&self.scene).iter().map(ToString::to_string).collect()
     }
@@ -38,7 +38,7 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// All of them, section by section.
+    /// Lists all pairs, wheelset by wheelset, each over the sections in order.
     pub fn all(&self) -> impl Iterator<Item = PairNumber> {
         let sections = self.sections.clone();
         self.wheelsets

@@ -4,9 +4,9 @@
 //! folder or table → wheelsets × sections → parts (a file each, by the hash of what it is made of) → table, summary, pages
 //! ```
 //!
-//! A part is some thousand pairs: wheelsets on a group of sections. Its profiles are read once, and no more than those of one part are in
-//! memory. Everything that is written at the end is made of the parts alone, in their order, so that it is the same bits whatever the
-//! number of threads and stops.
+//! A part has 1024 pairs at most: wheelsets on a group of sections. Its profiles are read once, and only those of one part are kept in
+//! memory. At the end the table, the summary and the page are made of the parts in their order, and the pages of the worst pairs from
+//! their profiles, read again: all have the same bits whatever the number of threads and stops.
 
 mod list;
 mod listed;
@@ -34,7 +34,7 @@ use listed::{Listed, PairNumber, Pairs};
 use part::FleetPart;
 use profiles::Shelf;
 
-/// Pairs of a part: some seconds of work.
+/// Most pairs of a part: some seconds of work.
 const PAIRS: usize = 1024;
 /// Most rail sections of a part, which are in memory together.
 const MOST_SECTIONS: usize = 256;
@@ -91,14 +91,15 @@ pub struct FleetOutcome {
 }
 
 impl Fleet {
-    /// Lists a fleet. `scene` has what all pairs share: \[track\], \[wheelset\], the radius, options of measured files; its own profiles count
+    /// Lists a fleet. `scene` has what all pairs share: \[track\], \[wheelset\], the radius, options of measured files; its own rails count
     /// where none are given. `wheels` is a folder, whose files are both wheels of a wheelset each, or a table (CSV). `rails` is a folder of
     /// sections, a file or a built-in name; `None` takes the rails of the table, or the scene's. Paths of the scene are relative to `folder`.
     ///
     /// No profile is read.
     ///
     /// # Errors
-    /// A scene without wheelset or with a given roll, or with anything else wrong but its profiles; lists that cannot be read; no rails.
+    /// A scene without wheelset or with a given roll, or with anything else wrong except its profiles; lists that cannot be read; no rails,
+    /// or rails in the table beside `rails`.
     pub fn new(scene: Scene, folder: &Path, wheels: &Path, rails: Option<&str>) -> Result<Self> {
         checked(&scene).map_err(|error| error.within("scene"))?;
         let wheelsets = list::wheelsets(wheels)?;
@@ -244,7 +245,7 @@ fn ranges(all: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
     (0..all).step_by(most).map(move |from| from..(from + most).min(all))
 }
 
-/// Refuses a scene that no pair can be placed by, whatever its profiles.
+/// Refuses a scene by which no pair can be placed, whatever its profiles, and one whose roll is given.
 fn checked(scene: &Scene) -> Result<()> {
     let radius = scene.wheel.radius.unwrap_or(460.0);
     let pair = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, radius)?;

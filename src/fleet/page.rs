@@ -28,10 +28,11 @@ const STEP: f64 = 0.1;
 /// Distance of the points of the rail's outline \[mm\].
 const OUTLINE: f64 = 0.5;
 
-/// Writes everything of the parts. Returns the number of pairs, of those with a conicity and of those with a finding.
+/// Writes the table, the summary and the page from the parts, and the pages of the worst pairs from their profiles. Returns the number of
+/// pairs, of those with a conicity and of those with a finding.
 ///
 /// # Errors
-/// A part that cannot be read; any error of the disk.
+/// A part, or a profile of a worst pair, that cannot be read; any error of the disk.
 pub(super) fn write(
     fleet: &Listed,
     folder: &KeptFolder,

@@ -43,11 +43,11 @@ const SIDES: [&str; 2] = ["left", "right"];
 pub(super) struct FleetRow {
     /// Wheelset, left and right wheel, left and right rail.
     pub names: [String; 5],
-    /// Radii \[mm\], where they are known.
+    /// Nominal rolling radii of the left and the right wheel \[mm\], where they are known.
     pub radii: [Option<f64>; 2],
     /// The values of [`numbers`], in their order.
     pub values: Vec<Option<f64>>,
-    /// What cannot be had and why, and what is doubtful; empty for nothing.
+    /// What cannot be computed and why, and what is doubtful; empty without either.
     pub finding: String,
     #[serde(skip)]
     /// Where its wheels touch: the number of the displacement towards the own rail, and of the cell on the rail.
@@ -65,7 +65,7 @@ pub(super) fn numbers() -> Vec<String> {
     of_pair.map(String::from).into_iter().chain(of_sides(&bands)).chain(of_sides(&measures)).collect()
 }
 
-/// Computes the row of a pair. Whatever is wrong is its finding.
+/// Computes the row of a pair. Errors become findings of the row.
 pub(super) fn row(fleet: &Listed, shelf: &Shelf, number: PairNumber) -> FleetRow {
     let [rails, wheels] = keys(fleet, number);
     let wheelset = &fleet.wheelsets[number.wheelset];
@@ -106,7 +106,7 @@ fn measured(
         return [None; MEASURES.len()];
     };
     let Measures { findings: own, .. } = measures;
-    // Those of a file stand once, where it is both wheels.
+    // Findings of one file for both wheels get one place, so that they are listed once.
     let place = if matches!(&key.source, Source::File(_)) { key.source.to_string() } else { side.to_owned() };
     findings.extend(own.iter().map(|finding| format!("{place}: {finding}")));
     MEASURES.map(|quantity| measures.value(quantity))
@@ -194,7 +194,7 @@ pub(super) fn wheelset(case: &Case) -> Result<(&WheelsetOnTrack, Position)> {
     }
 }
 
-/// Lists the warnings of a pair that the keys of its scene alone do not have: those are said once.
+/// Lists the warnings of a pair without those of the keys of the shared scene, which are given once for all pairs.
 fn own_warnings(fleet: &Listed, case: &Case) -> Vec<String> {
     let shared = fleet.warnings();
     case.warnings().into_iter().filter(|warning| !shared.contains(warning)).collect()
@@ -213,7 +213,7 @@ fn reason(why: NoConicity) -> &'static str {
 
 /// Where the wheels of a pair touch.
 struct Bands {
-    /// Of each side, on rail and wheel, the abscissae \[mm\] within the amplitude.
+    /// Ranges of the abscissae \[mm\], by side, on rail and wheel, over displacements within ±3 mm.
     reach: [[Interval; 2]; 2],
     touched: Vec<[i32; 2]>,
 }

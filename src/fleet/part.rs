@@ -9,17 +9,17 @@ use super::pair::FleetRow;
 use crate::error::{Error, Result};
 use crate::files::read_bytes;
 
-/// Largest file of a part \[bytes\]: its pairs at some 10 kB.
+/// Largest file of a part \[bytes\]: a quarter of a megabyte for each of a thousand pairs.
 const LARGEST: usize = 1 << 28;
-/// Largest beginning of a file that has the hash.
+/// Beginning of the names of the parts' files.
 const NAME: &str = "part-";
 
-/// Rows, and where how many wheels touch.
+/// The rows of a part, and how many wheels touch each cell of the rail at each displacement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct FleetPart {
     hash: String,
     pub rows: Vec<FleetRow>,
-    /// Displacement, cell and number of wheels.
+    /// Number of the displacement, of the cell, and of the wheels that touch there.
     pub touched: Vec<(i32, i32, u32)>,
 }
 
@@ -51,7 +51,7 @@ impl FleetPart {
         serde_json::to_vec(self).unwrap_or_default()
     }
 
-    /// Returns the hash of the part in a file; `None` without a whole one.
+    /// Returns the hash of the part in a file; `None` if there is no whole part.
     pub fn hash_of(path: &Path) -> Option<String> {
         Self::read(path).ok().map(|part| part.hash)
     }

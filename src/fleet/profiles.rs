@@ -20,7 +20,7 @@ use crate::scene::{self, ProfileData};
 pub(super) struct Key {
     pub source: Source,
     pub wheel: bool,
-    /// Whether the scene has options for the left side alone, the right side alone.
+    /// Whose options of the scene it has.
     of: OptionsOf,
 }
 
@@ -37,7 +37,7 @@ enum OptionsOf {
 pub(super) struct Read {
     pub profile: Profile,
     pub record: Option<Record>,
-    /// Of a wheel.
+    /// Measures of a wheel; `None` of a rail.
     pub measures: Option<Measures>,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn keys(fleet: &Listed, PairNumber { wheelset, section }: PairNumber)
     [[key(0, false), key(1, false)], [key(0, true), key(1, true)]]
 }
 
-/// Returns what the scene says of a profile.
+/// Returns the keys of the scene that hold for a profile: those of its side, or those of both.
 pub(super) fn data<'a>(fleet: &'a Listed, key: &Key) -> &'a ProfileData {
     let side = match key.of {
         OptionsOf::Both => None,
@@ -166,7 +166,7 @@ pub(super) fn hash(fleet: &Listed, pairs: &Pairs) -> String {
     sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns the hash of a file, of a list with that of its slices; of one that cannot be read its error.
+/// Returns the hash of a file's content, and of its slices' if it is a list; the message stands for the content of one that cannot be read.
 fn content(path: &Path) -> Vec<u8> {
     let mut sha = Sha256::new();
     let mut add = |path: &Path| match read_bytes(path, LARGEST_FILE) {

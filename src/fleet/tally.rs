@@ -101,7 +101,7 @@ pub(super) struct WorstPair {
     pub conicity: f64,
 }
 
-/// What is counted. Its size does not depend on the number of pairs.
+/// Counts over a fleet. Their size does not depend on the number of pairs.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FleetTally {
     pub pairs: usize,
@@ -175,7 +175,7 @@ impl FleetTally {
         all.filter_map(|(counted, of)| of.drawn(counted)).collect()
     }
 
-    /// Returns the share of the wheels that touch each cell of the rail, by displacement.
+    /// Returns the share \[%\] of the wheels that touch each cell of the rail, by displacement; `None` where no wheel touches.
     pub fn heat(&self) -> Option<FleetHeat> {
         let cells = || self.touched.keys().map(|(_, cell)| *cell);
         let (first, last) = (cells().min()?, cells().max()?);

@@ -15,7 +15,7 @@ const SMALLEST: f64 = 1e-60;
 /// Returns the axes that are asked for, and how automatic axes are laid.
 ///
 /// # Errors
-/// Values that are not finite, not ascending, too many or too near each other; a step that is not positive; a negative
+/// The errors of [`check_axis`]; equal steps of fewer than two values, or that do not ascend; a step that is not positive; a negative
 /// distance; a step or distance beside two given axes; a method of s for the normal gap.
 pub(super) fn asked_axes(grid: &GridData) -> Result<AskedAxes> {
     if let (Reference::Rail, Some(method)) = (grid.reference, grid.method) {
@@ -56,7 +56,7 @@ fn axis(place: &str, axis: &AxisData) -> Result<Option<Vec<f64>>> {
 /// Checks the values \[mm\] of an axis; `place` names it.
 ///
 /// # Errors
-/// Values that are not finite, not ascending, too many or too near; none at all.
+/// Values that are not finite, beyond ±10⁹ mm, not ascending or more than 10⁶; an extent below 10⁻⁶⁰ mm; none at all.
 pub fn check_axis(place: &str, values: &[f64]) -> Result<()> {
     check_length(place, values.len() as f64)?;
     let [first, .., last] = values else {

@@ -23,7 +23,7 @@ pub struct Scene {
     /// The rail profile; of both sides, mirrored on the left, unless `left` or `right` has its own.
     #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub rail: ProfileData,
-    /// The wheel profile and its rolling radius; of both sides likewise.
+    /// The wheel profile and its rolling radius; of both sides, mirrored on the left, unless `left` or `right` has its own.
     #[serde(default, skip_serializing_if = "ProfileData::is_empty")]
     pub wheel: ProfileData,
     /// The roller that stands in place of each rail: the rail's profile is revolved, not extruded.
@@ -115,7 +115,8 @@ impl Scene {
         [&self.rail, &self.wheel].into_iter().chain(own)
     }
 
-    /// Gives the same scene with its wheelset at another position; a scene without a wheelset as it is.
+    /// Gives the same scene with its wheelset at another position; a scene without a wheelset as it is. A roll by load stays where the
+    /// position asks for a solved roll.
     #[must_use]
     pub fn at(&self, position: &Position) -> Self {
         let roll = match position.roll {
@@ -218,7 +219,8 @@ pub struct WheelsetData {
     /// Pitch about the axle, rad: how far wheels that vary have turned, + forward at the bottom, so that what lies at −pitch is lowest.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub pitch: f64,
-    /// Vertical load of the axle, N, instead of `[patch]`: both wheels sink by the same distance, and δ is an estimate.
+    /// Vertical load of the axle, N, instead of an approach or load in `[patch]`: both wheels sink by the same distance, or each carries
+    /// half with `roll = "load"`; δ is an estimate.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
@@ -281,7 +283,7 @@ pub struct PatchData {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub pressure: bool,
     /// Longest side of the half-space's cells, mm: the grid's steps are divided by odd numbers. If not given, by three, or by nine
-    /// where the largest pressure may then err by more than 2 %.
+    /// where the largest pressure may then err by more than 1 %.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_cell: Option<f64>,
@@ -448,7 +450,7 @@ impl MeshData {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputData {
-    /// Formats; if not given, all but "png", "gmsh", "abaqus", "stl" and "vtp".
+    /// Formats; if not given, all but "png", "gmsh", "abaqus", "stl", "ply" and "vtp".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub formats: Option<Vec<OutputFormat>>,
 }

@@ -42,7 +42,7 @@ fn rotations(scene: &Scene, out: &mut Vec<Doubt>) {
     for (place, data) in own.into_iter().chain(of_sides) {
         let written = match data.and_then(|data| data.rotate.as_ref()) {
             Some(Rotation::Radians(angle)) => Some(*angle),
-            // An inclination is no slip of the unit, but may be one of its ends: "40:1".
+            // An inclination has no unit to mistake, but its two numbers may be exchanged: "40:1".
             Some(ratio) => ratio.turn().ok().map(|turn| turn.angle()),
             None => None,
         };
@@ -87,7 +87,7 @@ fn units(scene: &Scene, out: &mut Vec<Doubt>) {
     out.extend(scene.motion.as_ref().and_then(|motion| usual::speed("motion: speed", motion.speed)));
 }
 
-/// Of the track and the wheelset.
+/// Adds what is doubtful in the distances of the track and the wheelset.
 fn distances(scene: &Scene, out: &mut Vec<Doubt>) {
     let (Some(track), Some(wheelset)) = (&scene.track, &scene.wheelset) else { return };
     out.extend(track.gauge_height.and_then(|height| usual::gauge_height("track: gauge_height", height)));
@@ -96,7 +96,7 @@ fn distances(scene: &Scene, out: &mut Vec<Doubt>) {
     out.extend(given.and_then(|(gauge, back)| usual::gauge(places, gauge, back)));
 }
 
-/// Of a wheel's radius and flange.
+/// Adds what is doubtful in a wheel's radius, the side of its flange and the place of its flange back.
 fn wheel(
     scene: &Scene,
     side: Option<TrackSide>,
@@ -127,7 +127,7 @@ fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut V
     ];
     let bodies = [(Side::Rail, "rail", own.pair.rail()), (Side::Wheel, "wheel", own.pair.wheel())];
     for (k, (body, name, profile)) in bodies.into_iter().enumerate() {
-        // The kinks of standards are theirs, those of measured profiles their files', and those of a section its slices'.
+        // Kinks of built-in and measured profiles and of slices come from their sources: they are no slips of a drawing.
         let sections = own.varying.as_ref().filter(|_| data[k].file.is_some());
         let section = sections.is_some_and(|varying| varying.side() == body);
         if !section && !is_built_in(profile, body) && own.measured.both()[k].is_none() {

@@ -68,7 +68,7 @@ fn loaded(scene: &Scene, profiles: &Profiles) -> Result<Option<Case>> {
     if !scene.loaded() {
         return Ok(None);
     }
-    // Where it stands is said at every place; a march has no motion.
+    // The march sets the place along the track at every stop; it has no motion.
     let mut here = Scene { motion: None, ..scene.clone() };
     if let Some(wheelset) = &mut here.wheelset {
         wheelset.along = profiles.varying().any(|side| side == Side::Rail).then_some(0.0);
@@ -142,7 +142,7 @@ fn on_track(
     Ok((profiles, side))
 }
 
-/// What the lists of both sides say.
+/// What the slices of both sides have in common: the range along the track \[mm\]; and the warnings about both sides.
 struct Lists {
     reach: Interval,
     warnings: Vec<String>,

@@ -8,19 +8,19 @@ use crate::placement::{Motion, Pitch, Rates};
 /// Millimetres in a metre.
 const MILLIMETRES: f64 = 1000.0;
 
-/// Largest speed that is meant \[m/s\]: above any train's, below what a slow one has in mm/s.
+/// Largest velocity that is accepted \[m/s\]: above any train's, and below the number that a slow train's has in mm/s.
 const FASTEST: f64 = 250.0;
 
 /// Smallest coefficient of friction that CONTACT takes.
 const LEAST_FRICTION: f64 = 1e-4;
 
-/// Largest coefficient of friction that is meant: five times the highest of clean steel in vacuum.
+/// Largest coefficient of friction that is accepted: five times the highest of clean steel in vacuum.
 const MOST_FRICTION: f64 = 10.0;
 
 /// Checks the motion and turns it into mm/s and rad/s.
 ///
 /// # Errors
-/// Values that are not finite; a speed of 0, or one that is not in m/s.
+/// Values that are not finite; a speed of 0; a velocity beyond ±250 m/s.
 pub(super) fn motion(data: &MotionData) -> Result<Motion> {
     let in_table = |error: Error| error.within("motion");
     for (key, value) in [("speed", data.speed), ("lateral", data.lateral), ("vertical", data.vertical)] {
@@ -47,7 +47,7 @@ pub(super) fn motion(data: &MotionData) -> Result<Motion> {
 /// Checks the coefficients of friction.
 ///
 /// # Errors
-/// A coefficient that no solver takes; a kinetic one above the static one.
+/// A coefficient outside of 1e-4 to 10; a kinetic one above the static one.
 pub(super) fn friction(data: &FrictionData) -> Result<Friction> {
     let at_rest = data.at_rest.unwrap_or(Friction::default().at_rest);
     let sliding = data.sliding.unwrap_or(at_rest);

@@ -47,8 +47,8 @@ measured_options! {
         /// A flat on a wheel of one profile, in a scene for `wheelrail run`, `check` or `march`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub flat: Option<FlatData>,
-        /// Rows [angle around the wheel in rad, deviation from its radius in mm] of a wheel of one profile that is out of round, as
-        /// for `flat`: ascending angles, less than a turn, joined by a periodic cubic spline.
+        /// Rows [angle around the wheel in rad, deviation from its radius in mm] of a wheel of one profile that is out of round, in a
+        /// scene for `wheelrail run`, `check` or `march`: ascending angles, less than a turn, joined by a periodic cubic spline.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub radii: Option<Vec<[f64; 2]>>,
     }

@@ -16,7 +16,7 @@ use crate::profile::{Profile, SegmentData, Side, drawn_profile, standards};
 /// Largest rolling radius \[mm\]: a thousand kilometres. Its square is far from overflowing.
 const FARTHEST: f64 = 1e9;
 
-/// A profile file. Its keys are those of an inline profile.
+/// A profile file: the keys of an inline profile, with a name and a source.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ProfileFile {
@@ -31,7 +31,7 @@ struct ProfileFile {
     segments: Vec<SegmentData>,
 }
 
-/// Makes the profile of segments that are in a unit, mm if none is given.
+/// Makes the profile of segments that are in a unit, mm if none is given; `names` are its name and source.
 fn in_unit(
     names: [&str; 2],
     unit: Option<Unit>,
@@ -45,7 +45,7 @@ fn in_unit(
     drawn_profile(names[0], names[1], start.map(|start| start.map(|value| unit * value)), &segments)
 }
 
-/// Profiles by the names under which a scene has them, besides the built-in ones, with their bodies where these are known.
+/// Profiles that `profile` of a scene may name, before built-in ones of the same name; each with its body where that is known.
 pub type Given = BTreeMap<String, (Option<Side>, Profile)>;
 
 /// Where the profiles of a scene come from: its folder, and those that are given.
@@ -63,7 +63,7 @@ pub fn pair_of(scene: &Scene, rail: Profile, wheel: Profile, radius: f64) -> Res
     }
 }
 
-/// Makes a profile as the scene of `data` places it, and gives the record of a measured one. Files are relative to `folder`.
+/// Makes a profile, mirrored, turned and shifted as its keys say, and gives the record of a measured one. Files are relative to `folder`.
 ///
 /// # Errors
 /// Anything that is wrong with the profile, or with its keys.
@@ -93,7 +93,7 @@ pub(super) fn wheel_of(
     Ok((wheel, wheel_radius(scene, data, place)?))
 }
 
-/// Gives the nominal rolling radius of a wheel \[mm\].
+/// Gives the nominal rolling radius of a wheel \[mm\]: its own, or else that of `[wheel]`.
 pub(super) fn wheel_radius(scene: &Scene, data: &ProfileData, place: &str) -> Result<f64> {
     let radius = data.radius.or(scene.wheel.radius);
     let radius = radius
@@ -113,7 +113,7 @@ pub fn near(place: &str, radius: f64) -> Result<f64> {
     Ok(radius)
 }
 
-/// Returns a profile as the scene places it, and the record of a measured one.
+/// Returns a profile, mirrored, turned and shifted as its keys say, and the record of a measured one.
 fn profile(data: &ProfileData, (folder, given_ones): SceneSources<'_>, side: Side) -> Result<Resolved> {
     let Resolved { mut profile, measured } = match (&data.profile, &data.file, &data.segments) {
         (Some(name), None, None) => Resolved::drawn(named(name, given_ones, side)?),
@@ -203,7 +203,7 @@ impl ProfileSource {
 }
 
 /// Reads a profile from a file of any kind: segments in TOML or JSON, unless the options name a format, or measured points.
-/// `side` is the body that it is of; not needed where the file says so, and of no meaning for segments.
+/// `side` is the body that it is of; not needed where the file says so, and ignored for segments.
 ///
 /// Cost: that of [`measured::profile`].
 ///
@@ -311,7 +311,7 @@ fn named(name: &str, given: &Given, side: Side) -> Result<Profile> {
     })
 }
 
-/// Returns whether a file's extension is that of a chain of segments.
+/// Tells whether a file's extension is that of a chain of segments: `.toml` or `.json`.
 pub fn is_chain_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("json"))
 }
@@ -326,7 +326,7 @@ pub fn profile_from_file(path: &Path) -> Result<Profile> {
     profile_from_text(&path.display().to_string(), &text, json)
 }
 
-/// Makes a profile of the text of such a file, TOML or JSON, which messages call `place`.
+/// Makes a profile of the text of a profile file, TOML or JSON; messages call it `place`.
 ///
 /// # Errors
 /// Anything that is wrong with the text or its segments.

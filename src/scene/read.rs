@@ -91,7 +91,7 @@ fn advised(mut error: Error, line: Option<&str>) -> Error {
     error
 }
 
-/// Gives the value of a line `key = value` without quotes, lists, tables and comments, or of `"key": value` in JSON.
+/// Gives the value of a line `key = value`, or `"key": value` in JSON, without its comment; `None` of quotes, lists and tables.
 fn bare_value(line: &str) -> Option<&str> {
     let line = line.split('#').next().unwrap_or(line);
     let (_, value) = line.rsplit_once("\":").or_else(|| line.split_once('='))?;

@@ -31,7 +31,7 @@ const SMALLEST: f64 = 1e-60;
 /// Largest approach \[mm\]. No rail is so high: bodies that sink so deep pass through each other.
 const DEEPEST: f64 = 200.0;
 
-/// The same on a rail that varies along the track, where deeper patches take tens of seconds and mean as little.
+/// Largest approach \[mm\] with a body that varies: deeper patches take tens of seconds and have no meaning.
 const DEEPEST_IN_SLICES: f64 = 10.0;
 
 /// Largest load \[N\]. It is far above any real one, and its powers do not overflow.
@@ -40,10 +40,12 @@ const HEAVIEST: f64 = 1e60;
 /// Resolves a scene: reads its profiles, prepares the search and checks every value. Paths in the scene are relative to
 /// `folder`. `name` is the title of a scene without a title.
 ///
-/// Cost: each profile's file is read and fitted once. The case keeps the profiles.
+/// Cost: each profile's file is read and fitted once, or once for each side where one side has a profile of its own. The case keeps
+/// the profiles.
 ///
 /// # Errors
-/// Anything that is wrong; the error names the key. Values are checked before profiles, and profiles before placement.
+/// Anything that is wrong; the error names the key. Loads, material, motion and grid are checked before profiles, and profiles before
+/// placement.
 pub fn resolve(scene: &Scene, folder: &Path, name: &str) -> Result<Case> {
     resolve_given(scene, folder, name, &Given::new())
 }
@@ -80,7 +82,7 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     Ok(Case { profiles, setup, question, axes, outputs, echo, file: None, landmarks, doubts })
 }
 
-/// Refuses what there is not with a body that varies, of this name.
+/// Refuses approaches above [`DEEPEST_IN_SLICES`] with a body that varies, which messages call `name`.
 fn asked_of_varying(name: &str, question: &Question) -> Result<()> {
     match question.approach {
         Some(ApproachBy::Given(approach)) if approach > DEEPEST_IN_SLICES => {
@@ -111,8 +113,8 @@ pub fn echo(scene: &Scene, name: &str) -> Echo {
     }
 }
 
-/// Returns the formats to write, and the size of the triangle mesh. If the scene names no formats, these are all but PNG and
-/// those for finite elements.
+/// Returns the formats to write, and the size of the triangle mesh. If the scene names no formats, these are all that are written
+/// unasked, [`OutputFormat::unasked`].
 fn outputs(scene: &Scene) -> Result<Outputs> {
     let named = scene.output.formats.clone();
     let required = named.is_some();
@@ -176,7 +178,7 @@ fn pressure(patch: &PatchData, reference: Reference) -> Result<Option<AskedPress
 /// Returns the longest side of the cells of pressures \[mm\] as it is.
 ///
 /// # Errors
-/// One that is not positive.
+/// One that is not positive and finite.
 pub fn pressure_cell(cell: f64) -> Result<f64> {
     if cell > 0.0 && cell.is_finite() {
         return Ok(cell);
@@ -237,7 +239,7 @@ pub fn approach(patch: &PatchData) -> Result<ApproachBy> {
     }
 }
 
-/// Returns `by` if its value is one that can be meant.
+/// Returns `by` if its value, an approach \[mm\] or a load \[N\] of the key, is within the accepted range.
 fn checked(key: &str, value: f64, by: ApproachBy) -> Result<ApproachBy> {
     let load = !matches!(by, ApproachBy::Given(_));
     if finite(key, value)? < 0.0 {

@@ -116,7 +116,7 @@ pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
     })
 }
 
-/// Places one side, whose x is the track's times `sign`: by its nominal rail, which then deviates.
+/// Places one side, whose x is the track's times `sign`: the rail at its nominal place, then moved and turned by its deviation.
 fn side(
     profiles: &mut SideProfiles,
     (rails, wheels): (RailDistance, WheelDistance),
@@ -234,13 +234,13 @@ pub fn within(within: Option<f64>) -> Result<f64> {
     }
 }
 
-/// Least distance of rails or wheels \[mm\]: the gauge of a railway that people ride on is 184 mm and more.
+/// Least distance of rails or wheels \[mm\]: below the gauge of miniature railways for passengers, 184 mm.
 const LEAST_DISTANCE: f64 = 150.0;
 
 /// Gauges of railways \[mm\], for guesses at a unit.
 const GAUGES: std::ops::RangeInclusive<f64> = 300.0..=2500.0;
 
-/// Returns a distance of rails or wheels \[mm\]; what is not positive is left to those who use it.
+/// Returns a distance of rails or wheels \[mm\] as it is; one that is not positive is refused where it is used.
 ///
 /// # Errors
 /// A distance in another unit, with the unit that it seems to be in.
@@ -301,7 +301,7 @@ pub(super) fn wheels(wheelset: &WheelsetData) -> Result<WheelDistance> {
 
 fn roll(roll: RollData) -> Result<Roll> {
     Ok(match roll {
-        // The search's roll is where the loads' begins.
+        // The roll at which loads balance is sought from the roll of first touch.
         RollData::Word(RollWord::Solve | RollWord::Load) => Roll::Solve,
         RollData::Word(RollWord::Neglect) => Roll::Neglect,
         RollData::Radians(angle) => Roll::Fixed(finite("wheelset: roll", angle)?),

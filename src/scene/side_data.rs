@@ -15,7 +15,7 @@ pub struct SideData {
     /// The wheel profile of this side; without `radius` it has that of `[wheel]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel: Option<ProfileData>,
-    /// Vertical load of this side's wheel, N, instead of `[patch] load`; the other side then has its own as well.
+    /// Vertical load of this side's wheel, N, instead of an approach or load in `[patch]`; the other side then has its own as well.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,

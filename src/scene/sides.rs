@@ -14,8 +14,8 @@ use crate::lofted::{Loft, LoftedBody, section};
 use crate::numerics::bodies::Bodies;
 use crate::profile::{Profile, Side};
 
-/// Returns the rail and the wheel of a scene, turned and shifted as the scene says. Files are relative to the folder; each
-/// one is opened once.
+/// Returns the rails and the wheels of a scene, turned and shifted as the scene says. Files are relative to the folder; where one
+/// side has a profile of its own, files that both sides share are opened once for each side.
 ///
 /// # Errors
 /// Anything that is wrong with a profile; the error names the key.
@@ -68,8 +68,8 @@ fn of_side(
     Ok(SideProfiles { pair, measured, varying })
 }
 
-/// Makes the surface of a rail that is a list of slices without a place of its own, with its section where the wheelset stands; `None` of
-/// any other rail, and of a wheelset that stands nowhere along the track.
+/// Makes the surface of a rail that is a list of slices without a place of its own, with its section where the wheel or the wheelset
+/// stands; `None` of any other rail, and where the scene gives no `along`.
 fn varying(
     scene: &Scene,
     data: &ProfileData,

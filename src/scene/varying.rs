@@ -18,7 +18,7 @@ use crate::profile::{Profile, Side, trace};
 
 /// A wheel, which may vary around its axle.
 pub(super) struct WheelBody {
-    /// Its profile; of a list of slices the lowest section, or any.
+    /// Its profile; of a list of slices, the section that is lowest at the pitch, or the first one without a pitch.
     pub resolved: Resolved,
     /// Nominal rolling radius \[mm\].
     pub radius: f64,
@@ -26,7 +26,8 @@ pub(super) struct WheelBody {
     pub varying: Option<LoftedWheel>,
 }
 
-/// Makes the wheel of one side, turned by a pitch \[rad\], or by any; `key` is its place in the scene.
+/// Makes the wheel of one side; `key` is its place in the scene. A list of slices gives the section that is lowest at a pitch \[rad\], or
+/// without a pitch the one where the surface begins.
 ///
 /// # Errors
 /// Anything that is wrong with its profile, its list, its flat or its radii.
@@ -76,7 +77,7 @@ fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<Lofte
     }
     let (mut slices, doubts) = slices(data, path, Side::Wheel)?;
     for slice in &mut slices {
-        // They count from the field side.
+        // Arc lengths of a wheel's features count from the field side, and its profile from the flange.
         let curve = || trace(&slice.profile, 0.05).last().map_or(0.0, |mark| mark.s);
         let length = slice.measured_along.unwrap_or_else(curve);
         let from_left = |s: &f64| if *s < 0.0 { *s } else { (length - s).max(0.0) };
@@ -88,7 +89,7 @@ fn wheel_of_slices(data: &ProfileData, path: &Path, radius: f64) -> Result<Lofte
         .map_err(|error| error.within(place))
 }
 
-/// Refuses a wheel that varies on a rail that varies.
+/// Gives the error for a wheel that varies on a rail that varies.
 pub(super) fn both_vary(wheel_key: &str) -> Error {
     let advice = "give the wheel one profile, or the rail a section by `along`";
     Error::new(wheel_key, "a wheel that varies on a rail that varies", "one of the two", advice)
@@ -100,7 +101,7 @@ pub(super) fn list_of(data: &ProfileData, side: Side) -> Option<&PathBuf> {
     data.file.as_ref().filter(listed).filter(|_| data.along.is_none() && data.angle.is_none())
 }
 
-/// Reads the slices of a list, which are relative to it, and joins them as a rail's keys say.
+/// Reads the slices of a list, whose files are relative to it, and joins them as a rail's keys say.
 ///
 /// # Errors
 /// An unreadable file; whatever is wrong with the list, a slice, or the surface.
@@ -159,7 +160,7 @@ struct SliceCurve {
     profile: Profile,
     /// Length of the polygon of measured points \[mm\].
     polygon: Option<f64>,
-    /// By what the file's axes were multiplied.
+    /// Factors by which the file's axes were multiplied.
     scale: [f64; 2],
     /// The first finding about its points.
     doubt: Option<String>,
