@@ -4,6 +4,8 @@ use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{CurveMesh, ParameterPoint};
 use super::ray::{Height, foot, height};
 use super::sampler::{SampledCurve, SampledSurface};
+use wheelrail::error::{Error, ErrorKind, Result};
+use wheelrail::placement::Placement;
 
 /// Cells of the coarse mesh per local scale.
 const CELLS_PER_SCALE: f64 = 8.0;
@@ -14,6 +16,9 @@ const CELLS_AROUND: usize = 12;
 /// Longest cell of the coarse mesh around the axle, or along the rail \[mm\]. On a wheel of 460 mm its sagitta is 0.07 mm: with a
 /// larger one, the closest points of mesh and body may lie on different parts of the profile.
 const LONGEST_CELL: f64 = 16.0;
+
+/// Most cells of the coarse mesh of a body: about 700 MB for rail, wheel and lifted wheel.
+const MOST_CELLS: f64 = 1e5;
 
 /// Distance from a segment's end, as a share of the body's size, within which the neighbour counts as well. It covers the
 /// rounding of the foot's position, which grows with the slope.
@@ -57,16 +62,41 @@ pub(super) enum AlongZeta {
 }
 
 impl Solid {
+    /// Meshes a body of a placed pair up to a distance from the origin \[mm\], or as far as the wheel has a surface.
+    ///
+    /// # Errors
+    /// A distance or points that are not finite; bodies so large that their meshes take more than 10⁵ cells.
+    pub fn up_to(placement: &Placement, surface: SampledSurface, distance: f64) -> Result<Self> {
+        // Beyond its largest radius along η, and the profile's extent along ξ, the wheel has no surface.
+        let extent = placement.wheel().profile().extent();
+        let reach = distance.min(extent.hypot(placement.wheel_radius() + extent));
+        let not_finite = || {
+            let expected = "finite points over a finite window";
+            Error::new("check: profiles", "points that are not finite", expected, "check profiles and grid")
+        };
+        let cells = Self::cells(&surface, reach);
+        if !distance.is_finite() || !cells.is_finite() {
+            return Err(not_finite());
+        }
+        if cells > MOST_CELLS {
+            let (found, expected) =
+                (format!("a mesh of {cells:.0e} cells"), format!("at most {MOST_CELLS:e}"));
+            let advice = "take a smaller window, or profiles without parts far from the contact";
+            return Err(Error::new("check", found, expected, advice).of_kind(ErrorKind::Limit));
+        }
+        Self::new(surface, reach).ok_or_else(not_finite)
+    }
+
     /// Returns the number of cells of the coarse mesh up to this distance from the origin \[mm\]; infinite or NaN if surface or
     /// distance is not finite.
-    pub fn cells(surface: &SampledSurface, reach: f64) -> f64 {
+    fn cells(surface: &SampledSurface, reach: f64) -> f64 {
         let along = surface.curves.iter().map(along).sum::<f64>();
         along * around(surface.v_reach(reach))
     }
 
     /// Meshes a body around the ξ–η window, up to the given distance from the origin \[mm\]; `None` if its
     /// profile has a point that is not finite.
-    pub fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
+    pub(super) fn new(surface: SampledSurface, reach: f64) -> Option<Self> {
         let v = surface.v_reach(reach);
         let around = around(v) as usize;
         let mut patches = Vec::with_capacity(surface.curves.len());

@@ -15,7 +15,7 @@ use super::report::{ClosestDistances, Counts, Differences, Orders, Report};
 use super::request::{Answer, Request};
 use super::sampler::{SampledCurve, SampledSurface};
 use wheelrail::Interval;
-use wheelrail::error::{Error, ErrorKind, Result};
+use wheelrail::error::Result;
 use wheelrail::internal::largest;
 use wheelrail::placement::{Body, Placement};
 use wheelrail::profile::Shape;
@@ -42,9 +42,6 @@ const CONTACT_STEPS: usize = 12;
 /// Lift of the wheel for closest distances, as a share of R, on top of the approach.
 const LIFT: f64 = 1e-4;
 
-/// Most cells of the coarse mesh of a body: about 700 MB for rail, wheel and lifted wheel.
-const MOST_CELLS: f64 = 1e5;
-
 /// Checks the answers of `answer` for s and normals at (ξ, η) of a placed pair.
 ///
 /// Cost: about a millisecond a point, under 0.5 s in all.
@@ -61,27 +58,7 @@ pub fn check(
     let [xi, eta] = [request.window.xi, request.window.eta];
     let reach = [xi, eta].map(Interval::magnitude);
     let reach = reach[0].hypot(reach[1]);
-    // Beyond its largest radius along η, and the profile's extent along ξ, the wheel has no surface.
-    let extent = placement.wheel().profile().extent();
-    let farthest = extent.hypot(placement.wheel_radius() + extent);
-    let meshed = reach.min(farthest);
-    let not_finite = || {
-        let expected = "finite points over a finite window";
-        Error::new("check: profiles", "points that are not finite", expected, "check profiles and grid")
-    };
-    let solid = |surface: SampledSurface| {
-        let cells = Solid::cells(&surface, meshed);
-        if !reach.is_finite() || !cells.is_finite() {
-            return Err(not_finite());
-        }
-        if cells > MOST_CELLS {
-            let (found, expected) =
-                (format!("a mesh of {cells:.0e} cells"), format!("at most {MOST_CELLS:e}"));
-            let advice = "take a smaller window, or profiles without parts far from the contact";
-            return Err(Error::new("check", found, expected, advice).of_kind(ErrorKind::Limit));
-        }
-        Solid::new(surface, meshed).ok_or_else(not_finite)
-    };
+    let solid = |surface: SampledSurface| Solid::up_to(placement, surface, reach);
     let (rail, wheel) = (solid(SampledSurface::rail(placement))?, solid(SampledSurface::wheel(placement))?);
     let floors = floors(smallest_radius(placement), placement.rolling_radius())?;
     let points = spread_points(placement, request, &rail.surface, &wheel.surface);

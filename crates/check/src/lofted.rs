@@ -120,14 +120,12 @@ pub(super) fn check_lofted(
     let start = Instant::now();
     let Request { window, .. } = request;
     let reach = window.xi.magnitude().max(window.eta.magnitude());
-    let bad = || Error::new("check", "a window without finite points", "a finite window", "check the grid");
     let own = MeshedLoft::new(lofted, placement, request)?;
     let other = match lofted.side() {
         Side::Rail => SampledSurface::wheel(placement),
         Side::Wheel => SampledSurface::rail(placement),
     };
-    let other = Some(other).filter(|_| reach.is_finite());
-    let other = other.and_then(|surface| Solid::new(surface, 2.0 * reach)).ok_or_else(bad)?;
+    let other = Solid::up_to(placement, other, 2.0 * reach)?;
     let (mut separation, mut normals) = (Vec::new(), Vec::new());
     let [mut no_surface, mut steep_or_end, mut surface_disputed] = [0; 3];
     for k in 0..GRID[0] * GRID[1] {

@@ -118,17 +118,7 @@ pub fn check_normal_gap(placement: &Placement, samples: &[NormalGapSample]) -> R
         Side::Rail => SampledSurface::wheel(placement),
         Side::Wheel => SampledSurface::rail(placement),
     };
-    let Some(other) =
-        Some(surface).filter(|_| reach.is_finite()).and_then(|surface| Solid::new(surface, 2.0 * reach))
-    else {
-        let expected = "finite points and profiles";
-        return Err(Error::new(
-            "check: normal gap",
-            "points that are not finite",
-            expected,
-            "check the profiles",
-        ));
-    };
+    let other = Solid::up_to(placement, surface, 2.0 * reach)?;
     let radius = smallest_radius(placement);
     let sharpest = sharpest_radius(placement.wheel().profile()).min(radius);
     let floors = floors(radius, placement.rolling_radius())?;
