@@ -103,7 +103,8 @@ impl<'a> Outline<'a> {
                     return f64::INFINITY;
                 }
             }
-            _ if floor == 0.0 => return self.slicer.depth(xi),
+            // The lowest place of a line whose slices are found by roots may be another one.
+            _ if floor == 0.0 && self.slicer.by_roots.is_none() => return self.slicer.depth(xi),
             _ => {}
         }
         self.slicer.separation(xi, floor) - self.slicer.approach()

@@ -11,7 +11,7 @@ use wheelrail::patch::Slicer;
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{Contact, ONE_CONTACT, Position, Roll, Selection};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
-use wheelrail::{Arc, Evaluator, Half, Pair, Patch, Placement, Profile, Segment, Window};
+use wheelrail::{Arc, Evaluator, Half, Interval, Pair, Patch, Placement, Profile, Segment, Window};
 use wheelrail_report::reference::ReferenceScene;
 
 fn folder() -> &'static Path {
@@ -253,4 +253,16 @@ fn boundaries_on_measured_rollers_are_exact_between_and_beside_joints() {
         }
     }
     assert!(places > 4000 && corners > 150, "{places} {corners}");
+}
+
+/// A window that ends at η = 0 cuts a yawed patch off its lowest places.
+#[test]
+fn both_halves_of_a_patch_make_it_up() {
+    for (contact, pair) in found_on_rig(350.0) {
+        let placement = contact.placed(&pair).unwrap();
+        let area = |eta: Interval| Patch::new(&placement, 0.08, &Window { xi: Interval::ALL, eta }).area();
+        let halves = [Interval { high: 0.0, ..Interval::ALL }, Interval { low: 0.0, ..Interval::ALL }];
+        let (whole, sum) = (area(Interval::ALL), halves.map(area).iter().sum::<f64>());
+        assert!((sum / whole - 1.0).abs() < 1e-9, "{contact:?}: {sum} instead of {whole}");
+    }
 }
