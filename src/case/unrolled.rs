@@ -34,7 +34,9 @@ impl<'a> Unrolled<'a> {
         };
         let normals = sigma.iter().filter_map(normal).collect();
         let components = conformal.patch.iter().flat_map(|patch| &patch.components);
-        let loops = components.map(|component| component.boundary.clone()).collect();
+        let loops =
+            components.flat_map(|component| [&component.boundary].into_iter().chain(&component.holes));
+        let loops = loops.cloned().collect();
         Some(Self { refusals: refusals(part, conformal), cells, sigma, eta, gap, normals, loops })
     }
 

@@ -405,7 +405,7 @@ pub struct StepsData {
     /// Last value, mm.
     pub to: f64,
     /// Number of values.
-    #[schemars(extend("minimum" = 1, "maximum" = 1000000))]
+    #[schemars(extend("minimum" = 2, "maximum" = 1000000))]
     pub n: u64,
 }
 

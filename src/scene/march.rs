@@ -109,7 +109,9 @@ impl MarchSides<'_> {
         let sign = if right { 1.0 } else { -1.0 };
         let moved = |track: Track| track.moved(sign * deviation.lateral, deviation.vertical);
         let Some(list) = list_of(rail, Side::Rail) else {
-            let rail = rail_of(rail, &rail_key, (folder, &given))?.profile;
+            let rail = rail_of(rail, &rail_key, (folder, &given))?;
+            lists.take_findings(&rail_key, &rail);
+            let rail = rail.profile;
             let track = moved(Track::new(&rail, rails)?)?;
             let varying = varying.map(|wheel| LoftedBody::Wheel(Arc::new(wheel)));
             return on_track((Pair::new(rail, resolved.profile, radius)?, varying), track, axle);
@@ -149,9 +151,13 @@ struct Lists {
 }
 
 impl Lists {
-    fn take_wheel(&mut self, key: &str, (own, radius): (&Resolved, f64), varying: Option<&LoftedWheel>) {
+    fn take_findings(&mut self, key: &str, own: &Resolved) {
         let findings = own.measured.iter().flat_map(|record| &record.warnings);
         self.warnings.extend(findings.map(|finding| format!("{key}: {}: {}", finding.place, finding.found)));
+    }
+
+    fn take_wheel(&mut self, key: &str, (own, radius): (&Resolved, f64), varying: Option<&LoftedWheel>) {
+        self.take_findings(key, own);
         let surface = varying.into_iter().flat_map(|wheel| wheel.warnings());
         self.warnings.extend(surface.map(|warning| format!("{key}: {warning}")));
         self.warnings.extend(usual::radius(&format!("{key}: radius"), radius).map(|doubt| doubt.to_string()));
