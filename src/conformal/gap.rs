@@ -242,3 +242,40 @@ impl WheelPoint {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Result;
+    use crate::placement::Pair;
+    use crate::profile::{Arc, Half, Profile, Segment};
+
+    /// A gauge corner of 13 mm in a root of 14 mm, on a rail and on a roller.
+    #[test]
+    fn slopes_are_those_of_differences() -> Result<()> {
+        let arc = |radius: f64| -> Result<Profile> {
+            let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-11.0, 11.0])?;
+            Profile::new("arc", "", vec![Segment::arc(arc)])
+        };
+        let pair = Pair::new(arc(13.0)?, arc(14.0)?, 460.0)?;
+        for (pair, skew) in [(pair.clone(), 0.0), (pair.clone(), 0.03), (pair.on_roller(350.0)?, 0.03)] {
+            let placement = pair.placed(0.0, 0.0, skew)?;
+            let gap = NormalGap::new(&placement);
+            for at in [[-7.0, 3.0], [0.5, -4.0], [8.0, 6.0]] {
+                let mut column = gap.column(at[0]).expect("on the rail");
+                let found = gap.slopes_in(&mut column, at[1]).expect("a point of the wheel");
+                assert_eq!(found.gap, gap.gap(at[0], at[1]));
+                for (axis, slope) in found.slopes.into_iter().enumerate() {
+                    let beside = |step: f64| {
+                        let mut moved = at;
+                        moved[axis] += step;
+                        gap.gap(moved[0], moved[1])
+                    };
+                    let difference = (beside(1e-4) - beside(-1e-4)) / 2e-4;
+                    assert!((slope - difference).abs() < 1e-9, "{skew} {at:?}: {slope} and {difference}");
+                }
+            }
+        }
+        Ok(())
+    }
+}

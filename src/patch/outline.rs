@@ -116,9 +116,4 @@ impl<'a> Outline<'a> {
         let [s, eta] = self.slicer.on_surface(xi, floor);
         [s, xi, eta]
     }
-
-    /// Returns s(ξ, η) \[mm\].
-    pub fn separation(&mut self, xi: f64, eta: f64) -> f64 {
-        self.slicer.separation(xi, eta)
-    }
 }

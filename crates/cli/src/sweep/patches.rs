@@ -75,8 +75,7 @@ fn patch(
 ) -> Result<WrittenPosition> {
     let position = *position;
     let arrangement = Arrangement::Wheelset { system: Arc::clone(table.system), position };
-    let roll_by_load = case.setup().roll_by_load;
-    let setup = Setup { arrangement, within: table.selection.within, roll_by_load, ..case.setup().clone() };
+    let setup = Setup { arrangement, ..case.setup().clone() };
     let here = case.at(setup, scene::echo(&scene.at(&position), name)).as_one_of_many();
     let run = match Run::new(here, SILENT) {
         Err(error) if error.kind == ErrorKind::NoContact => {
