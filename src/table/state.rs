@@ -171,8 +171,8 @@ fn side_values(z: f64, contact: &Contact, pressed: Option<(Pressed, f64)>) -> (S
     (side, Lacks::Nothing, curvatures.long_axis_rad.abs() < FRAC_PI_4)
 }
 
-/// Rate \[mm/mm\] at which a gap may change in addition to what the slopes at one end give: by the roll and by the turning of the
-/// tangents. Twice the turning of the contact's own tangents is added to it.
+/// Part \[mm/mm\] of the bound of a gap's rate of change over the displacement that covers roll and turning tangents between two states,
+/// beside what their slopes give. Twice the change of the slopes between the states comes on top.
 const UNSEEN: f64 = 0.05;
 
 impl State {
@@ -212,7 +212,7 @@ impl State {
         self.topology.map(|topology| (topology.lacks, topology.along))
     }
 
-    /// Returns the largest |slope| of a place of contact.
+    /// Returns the steepest slope of the common tangents at both contacts, as a magnitude, in track axes.
     pub fn steepest(&self) -> f64 {
         self.slopes[0].abs().max(self.slopes[1].abs())
     }

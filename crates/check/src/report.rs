@@ -84,9 +84,9 @@ pub struct Counts {
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// Whether all values agree: there is no objection.
+    /// Whether the check passed: `objections` is empty.
     pub agrees: bool,
-    /// The objections; empty if all values agree.
+    /// Each disagreement, and each sign that the checker could not decide, with the value found and the value expected.
     pub objections: Vec<String>,
     /// Numbers of points, by what was found at them.
     pub counts: Counts,
