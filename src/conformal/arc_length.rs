@@ -1,7 +1,10 @@
 //! The rail's surface by its arc length σ from the contact point.
 
+use std::sync::{Arc, OnceLock};
+
+use crate::numerics::chebyshev::{NODES, POINTS, PROOF, coefficients_by_vectors, value};
 use crate::numerics::interval::Interval;
-use crate::numerics::lanes::padded;
+use crate::numerics::lanes::{Lanes, padded};
 use crate::numerics::polynomial::{derivatives, value_and_slope};
 use crate::numerics::quadrature::smooth_integrals;
 use crate::numerics::roots::bracketed;
@@ -11,12 +14,12 @@ use crate::profile::{ArcBranch, Branch, BranchShape, ONE_JOINT, PolynomialBranch
 /// Relative accuracy demanded of the arc length of a polynomial: rounding.
 const LENGTH_DEMAND: f64 = 1e-15;
 
-/// Longest part of a polynomial, as a share of its range, whose length is tried with few nodes first.
-const SHORT: f64 = 0.1;
-
 /// Most Newton steps to the parameter of an arc length. Each doubles the digits; more are needed only where a polynomial is
 /// nearly vertical in its parameter.
 const STEPS: usize = 60;
+
+/// Newton step, in roundings of the parameter run through, after which iteration ends.
+const STEP_ROUNDINGS: f64 = 4.0;
 
 /// A point of the rail with the direction of its surface, in the contact frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +43,8 @@ pub struct RailPoint {
 /// The part of the rail's surface that is connected with C and is a graph over ξ, by arc length.
 #[derive(Debug, Clone)]
 pub struct RailArcLength<'a> {
-    /// In order of σ.
-    stretches: Vec<BranchStretch<'a>>,
+    /// In order of σ. Copies share what is found of them on the way.
+    stretches: Arc<[BranchStretch<'a>]>,
 }
 
 /// A stretch of the rail over one branch.
@@ -49,6 +52,8 @@ pub struct RailArcLength<'a> {
 struct BranchStretch<'a> {
     /// Range of σ \[mm\].
     sigma: Interval,
+    /// Index of the piece of the rail's section.
+    piece: usize,
     curve: StretchCurve<'a>,
     on_contact: bool,
 }
@@ -58,8 +63,13 @@ struct BranchStretch<'a> {
 enum StretchCurve<'a> {
     /// A line or arc through a station.
     Arc { begin: f64, from: Station, radius: f64 },
-    /// A polynomial through its point t.
-    Polynomial { begin: f64, t: f64, branch: &'a PolynomialBranch },
+    /// A polynomial from its point t.low to t.high, of which neither need be the larger.
+    Polynomial {
+        begin: f64,
+        t: Interval,
+        branch: &'a PolynomialBranch,
+        mean: OnceLock<Option<Box<MeanSpeed>>>,
+    },
 }
 
 impl<'a> RailArcLength<'a> {
@@ -71,7 +81,7 @@ impl<'a> RailArcLength<'a> {
         let mut stretches = Vec::new();
         let centre = section.pieces.partition_point(|piece| piece.xi.high < 0.0);
         if section.pieces.get(centre).is_none_or(|piece| piece.xi.low > 0.0) {
-            return Self { stretches };
+            return Self { stretches: stretches.into() };
         }
         let frame = &section.frame;
         let size = placement.rail().profile().extent() + frame.x.abs() + frame.z.abs();
@@ -89,8 +99,8 @@ impl<'a> RailArcLength<'a> {
             let piece = &section.pieces[index];
             let branch = &section.branches[piece.branch];
             let far = piece.xi[usize::from(forward)];
-            let stretch =
-                BranchStretch::new(branch, section.contact == Some(piece.branch), far, from, forward);
+            let on_contact = section.contact == Some(piece.branch);
+            let stretch = BranchStretch::new((index, branch), on_contact, far, from, forward);
             let sigma = stretch.sigma[usize::from(forward)];
             stretches.push(stretch);
             (far, sigma)
@@ -107,7 +117,7 @@ impl<'a> RailArcLength<'a> {
         }
         stretches.retain(|stretch| stretch.sigma.has_width());
         stretches.sort_by(|a, b| a.sigma.low.total_cmp(&b.sigma.low));
-        Self { stretches }
+        Self { stretches: stretches.into() }
     }
 
     /// Returns the smallest and largest σ \[mm\]; `None` if C is not on the rail's surface.
@@ -121,11 +131,18 @@ impl<'a> RailArcLength<'a> {
         ends.filter(|&sigma| sigma != 0.0).collect()
     }
 
+    /// Returns the ranges of σ \[mm\] over which the rail is one piece of its section, ascending, each with the index of that piece. C
+    /// parts its own piece.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (Interval, usize)> {
+        self.stretches.iter().map(|stretch| (stretch.sigma, stretch.piece))
+    }
+
     /// Finds the point of the rail at σ \[mm\]. At a joint it is on the stretch at smaller σ. Returns `None` beyond the
     /// reach.
     ///
     /// Accuracy: on the segment through C a few roundings of each coordinate, relative to σ; elsewhere a few roundings of
-    /// the profile's extent. Cost: a sine and a cosine on arcs; three or four short quadratures on polynomials.
+    /// the profile's extent. Cost: a sine and a cosine on arcs; on a polynomial three steps with
+    /// the series of its mean speed, which the first point of a stretch takes 16 short quadratures to find.
     pub fn point(&self, sigma: f64) -> Option<RailPoint> {
         let index = self.stretches.partition_point(|stretch| stretch.sigma.high < sigma);
         let stretch = self.stretches.get(index).filter(|stretch| stretch.sigma.low <= sigma)?;
@@ -143,8 +160,14 @@ impl<'a> RailArcLength<'a> {
 }
 
 impl<'a> BranchStretch<'a> {
-    /// Makes the stretch of a branch from (ξ, σ) \[mm\] to the abscissa `far` \[mm\].
-    fn new(branch: &'a Branch, on_contact: bool, far: f64, (xi, begin): (f64, f64), forward: bool) -> Self {
+    /// Makes the stretch of a piece and its branch from (ξ, σ) \[mm\] to the abscissa `far` \[mm\].
+    fn new(
+        (piece, branch): (usize, &'a Branch),
+        on_contact: bool,
+        far: f64,
+        (xi, begin): (f64, f64),
+        forward: bool,
+    ) -> Self {
         let (curve, length) = match &branch.shape {
             BranchShape::Arc(arc) => {
                 // The contact segment goes through C with no rounding.
@@ -154,12 +177,14 @@ impl<'a> BranchStretch<'a> {
             }
             BranchShape::Polynomial(branch) => {
                 let t = if on_contact && xi == 0.0 { 0.0 } else { branch.parameter(xi) };
-                let curve = StretchCurve::Polynomial { begin, t, branch };
-                (curve, run_length(branch, t, branch.parameter(far)))
+                let end = branch.parameter(far);
+                let mean = OnceLock::new();
+                let curve = StretchCurve::Polynomial { begin, t: Interval::new(t, end), branch, mean };
+                (curve, run_length(branch, t, end))
             }
         };
         let sign = if forward { 1.0 } else { -1.0 };
-        Self { sigma: Interval::between(begin, begin + sign * length.abs()), curve, on_contact }
+        Self { sigma: Interval::between(begin, begin + sign * length.abs()), piece, curve, on_contact }
     }
 }
 
@@ -176,9 +201,8 @@ fn arc_length(arc: &ArcBranch, from: &Station, far: f64) -> f64 {
 /// Computes the length \[mm\] of a polynomial between two parameters; negative if they descend.
 fn run_length(branch: &PolynomialBranch, a: f64, b: f64) -> f64 {
     let over = Interval::between(a, b);
-    let speed = |t: &f64| value_and_slope(&branch.xi, *t)[1].hypot(value_and_slope(&branch.zeta, *t)[1]);
-    let short = over.width() <= SHORT * branch.t.width();
-    let [length] = smooth_integrals(&mut |t| [padded(t.iter().map(speed))], over, [LENGTH_DEMAND], short);
+    let speed = |t: &f64| speed(branch, *t);
+    let [length] = smooth_integrals(&mut |t| [padded(t.iter().map(speed))], over, [LENGTH_DEMAND], true);
     if a <= b { length } else { -length }
 }
 
@@ -197,8 +221,12 @@ impl StretchCurve<'_> {
                 let station = Station { x: chord * cos_half, z: chord * sin_half, cos, sin };
                 (station.placed_by(from), 1.0 / radius)
             }
-            Self::Polynomial { begin, t, branch } => {
-                let t = parameter(branch, *t, sigma - begin);
+            Self::Polynomial { begin, t, branch, mean } => {
+                let (from, length) = (t.low, sigma - begin);
+                let t = match mean.get_or_init(|| MeanSpeed::new(branch, *t).map(Box::new)) {
+                    Some(mean) => mean.parameter(branch, *t, length),
+                    None => parameter(branch, from, length),
+                };
                 let ([x, dx, hx], [z, dz, hz]) = (derivatives(&branch.xi, t), derivatives(&branch.zeta, t));
                 let speed = dx.hypot(dz);
                 let curvature = (dx * hz - dz * hx) / speed.powi(3);
@@ -208,13 +236,56 @@ impl StretchCurve<'_> {
     }
 }
 
+/// The mean of the speed of a polynomial between its first point and another, as a function of the latter. Unlike the length, of which
+/// it is the quotient by the parameter run through, it keeps its digits near the first point.
+#[derive(Debug, Clone)]
+struct MeanSpeed {
+    /// A sum of Chebyshev polynomials over the range.
+    coefficients: Lanes,
+}
+
+impl MeanSpeed {
+    /// Interpolates the mean over a range; `None` if 16 points do not resolve it.
+    fn new(branch: &PolynomialBranch, t: Interval) -> Option<Self> {
+        let (middle, half) = (t.middle(), t.width() / 2.0);
+        let mean = |node: f64| {
+            let at = middle + half * node;
+            run_length(branch, t.low, at) / (at - t.low)
+        };
+        let coefficients = coefficients_by_vectors(&NODES.map(mean));
+        let tail = coefficients[POINTS - PROOF..].iter().map(|c| c.abs()).sum::<f64>();
+        (tail <= f64::EPSILON * coefficients[0]).then_some(Self { coefficients })
+    }
+
+    /// Finds the parameter at a length \[mm\] from the first point, by Newton's method held inside the range.
+    fn parameter(&self, branch: &PolynomialBranch, over: Interval, length: f64) -> f64 {
+        let (first, range) = (over.low, Interval::between(over.low, over.high));
+        let mut t = range.nearest(first + length / self.coefficients[0]);
+        for _ in 0..STEPS {
+            let mean = value(&self.coefficients, (t - over.middle()) / (over.width() / 2.0));
+            let next = range.nearest(t + (length - (t - first) * mean) / speed(branch, t));
+            let step = next - t;
+            t = next;
+            if step.abs() <= STEP_ROUNDINGS * f64::EPSILON * (t - first).abs() {
+                break;
+            }
+        }
+        t
+    }
+}
+
+/// Computes the length \[mm\] of a polynomial per parameter.
+fn speed(branch: &PolynomialBranch, t: f64) -> f64 {
+    let [dx, dz] = [&branch.xi, &branch.zeta].map(|coordinate| value_and_slope(coordinate, t)[1]);
+    (dx * dx + dz * dz).sqrt()
+}
+
 /// Finds the parameter at a length \[mm\] along a polynomial from the parameter `from`, by Newton's method held inside the
 /// range.
 fn parameter(branch: &PolynomialBranch, from: f64, length: f64) -> f64 {
-    let speed = |t: f64| value_and_slope(&branch.xi, t)[1].hypot(value_and_slope(&branch.zeta, t)[1]);
     let (mut t, mut walked) = (from, 0.0);
     for _ in 0..STEPS {
-        let next = branch.t.nearest(t + (length - walked) / speed(t));
+        let next = branch.t.nearest(t + (length - walked) / speed(branch, t));
         let step = next - t;
         if step.abs() <= f64::EPSILON * (next - from).abs() {
             break;

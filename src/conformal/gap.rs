@@ -9,7 +9,6 @@ use super::span::RayPoint;
 use crate::lofted::{Feet, FramedLoft, LoftFoot};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
-use crate::profile::Section;
 use crate::separation::GapSlopes;
 
 /// Number of equal steps in which the largest and least angle of a range are sought.
@@ -161,11 +160,6 @@ impl<'a> NormalGap<'a> {
             at.abscissae[1] = below.abscissae[0];
         }
         Some(at)
-    }
-
-    /// Returns the sections of the wheel and of a roller; a rail has none here.
-    pub(crate) fn sections(&self) -> [Option<&'a Section>; 2] {
-        [Some(self.bodies.wheel.section), self.under.as_ref().map(|under| under.bodies.wheel.section)]
     }
 
     /// Finds the wheel's point on the line along the normal; `None` where it misses.

@@ -136,7 +136,8 @@ fn least_under_skew(placement: &Placement) -> Option<(f64, f64, f64)> {
             // Where the rail steps, its right side is next to the joint.
             for xi in [interval.low.next_up(), interval.high] {
                 let spot = valleys.spot(k, xi);
-                let s = valleys.separation(&mut evaluator, xi, &spot);
+                let below = evaluator.rail_height(xi);
+                let s = valleys.separation(&spot, below, |moved| evaluator.separation(xi + moved, spot.eta));
                 if !s.is_nan() && least.is_none_or(|(smallest, ..)| s < smallest) {
                     least = Some((s, xi, spot.eta));
                 }

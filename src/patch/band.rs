@@ -88,13 +88,12 @@ impl Band {
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
-        let over_plane = outline.slicer.by_roots.is_none() && outline.slicer.varying.is_none();
-        let mut finder =
-            over_plane.then(|| EdgeFinder::new(outline.slicer.placement(), outline.slicer.approach()));
+        let on_rail = outline.slicer.by_roots.is_none() && outline.slicer.varying.is_none();
+        let mut finder = on_rail.then(|| EdgeFinder::new(outline.slicer.placement()));
         // ξ, the square of half the width and the middle of the last two slices that were found one by one.
         let mut known = [[f64::NAN; 3]; 2];
         let edges = |xi: &Lanes| {
-            let many = finder.as_mut().and_then(|finder| finder.edges(xi));
+            let many = finder.as_mut().and_then(|finder| finder.edges(&outline.slicer.raised(xi)));
             many.filter(|edges| outline.slicer.has_one_valley(xi, edges, |xi| self.valley(xi)))
                 .unwrap_or_else(|| {
                     let one = |xi: f64| {

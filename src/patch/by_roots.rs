@@ -1,4 +1,5 @@
-//! Finds the slices of a patch by roots: of a wheel on a roller, with and without skew, and over the rail's own surface.
+//! Finds the slices of a patch by roots: of a wheel on a roller, with and without skew, over the tangent plane and over the roller's own
+//! surface.
 //!
 //! Along a line of constant ξ or σ both bodies bend away from each other, so that the gap falls to one lowest place and rises on
 //! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where a hollow of its profile has
@@ -9,6 +10,7 @@ use super::skewed::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::{Body, Placement};
+use crate::profile::Section;
 use crate::separation::GapSlopes;
 
 /// Factor by which an end of a slice is sought farther out.
@@ -19,6 +21,11 @@ const SECANTS: usize = 10;
 
 /// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
 const SLOPE_ROUNDINGS: f64 = 8.0;
+
+/// Returns the sections along which a line of constant ξ or σ moves as η grows: the wheel's, and that of a roller.
+pub(super) fn sections(placement: &Placement) -> [Option<&Section>; 2] {
+    [Some(&placement.wheel().section), placement.under().map(|under| &under.wheel().section)]
+}
 
 /// The slices of a placed pair at one approach.
 #[derive(Debug)]
@@ -32,18 +39,21 @@ pub(super) struct ByRoots<'a> {
     opening: f64,
     /// Least step of a surface \[mm\].
     step: f64,
+    /// The sections of both bodies.
+    sections: [Option<&'a Section>; 2],
     /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
     steps: [Vec<Interval>; 2],
 }
 
 impl<'a> ByRoots<'a> {
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
-    pub(super) fn new(placement: &Placement, approach: f64, level: Level<'a>) -> Self {
+    pub(super) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Self {
         let around = |body: &Body| body.section.frame.cos / body.axle_distance();
         let opening = 0.5 * (around(placement.wheel()) + around(placement.rail()));
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
-        let steps = level.sections().map(|section| section.map_or_else(Vec::new, |section| section.steps()));
-        Self { level, skewed: placement.skew() != 0.0, approach, opening, step, steps }
+        let sections = sections(placement);
+        let steps = sections.map(|section| section.map_or_else(Vec::new, Section::steps));
+        Self { level, skewed: placement.skew() != 0.0, approach, opening, step, sections, steps }
     }
 
     /// Returns η \[mm\] of the least gap at ξ: 0 without skew; with skew NaN where a body has no surface at η = 0.
@@ -97,14 +107,24 @@ impl<'a> ByRoots<'a> {
         None
     }
 
-    /// Returns whether the bodies are surely farther apart than δ along the whole line of ξ; `None` where a body has no surface at η = 0.
+    /// Returns whether the bodies are surely farther apart than δ along all lines of an interval of ξ. Over the roller's surface that is
+    /// not known.
     ///
     /// Method: with skew, a parabola with the gap and slope at η = 0 falls below that gap by slope²/4a, with a the opening; slope²/a is
-    /// allowed for.
-    pub(super) fn is_apart(&mut self, xi: f64) -> Option<bool> {
+    /// allowed for. Between the ends of the interval it falls by no more than the profiles' slopes there allow.
+    pub(super) fn is_apart(&mut self, over: Interval) -> bool {
+        if self.level.normal_gap().is_some() {
+            return false;
+        }
         let allowed = if self.skewed { self.opening.recip() } else { 0.0 };
-        let GapSlopes { gap, slopes: [_, across], .. } = self.level.at(xi, 0.0)?;
-        Some(gap - allowed * across * across > self.approach)
+        let [Some(a), Some(b)] = over.ends().map(|xi| self.level.at(xi, 0.0)) else { return false };
+        let slopes = [0, 1].map(|body| {
+            let met = Interval::between(a.abscissae[body], b.abscissae[body]).grown(over.width());
+            self.sections[body].map_or(Interval::of(0.0), |section| section.slopes_over(met))
+        });
+        let fall = (slopes[0] + slopes[1]).magnitude() * over.width();
+        let least = |at: &GapSlopes| at.gap - allowed * at.slopes[1] * at.slopes[1];
+        least(&a) - fall > self.approach && least(&b) - fall > self.approach
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.

@@ -274,8 +274,8 @@ impl BandGroup {
         for band in &mut self.bands {
             band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
-            if let Some(by_roots) = &mut outline.slicer.by_roots {
-                corners::over_joints(by_roots, band, &mut more);
+            if outline.slicer.by_roots.is_some() || outline.slicer.is_over_rail() && !varying {
+                corners::over_joints(&mut outline.slicer, band, &mut more);
             } else if let Some(least) = least {
                 corners::plain(outline, band, least, &mut more);
             } else if !varying {

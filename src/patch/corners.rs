@@ -1,9 +1,10 @@
 //! Finds where the boundary of a patch may have a corner, and where it turns back in η.
 
 use super::band::{Band, ONE_CORNER, extrapolated, halved};
-use super::by_roots::ByRoots;
+use super::by_roots::sections;
 use super::loops::Rows;
 use super::outline::Outline;
+use super::slice::Slicer;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, change, last_where};
 
@@ -73,14 +74,15 @@ pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: Interval, corners:
     });
 }
 
-/// Appends the ξ or σ inside a band at which an edge passes a joint of the wheel or of a roller, where slices are found by roots.
+/// Appends the ξ or σ inside a band at which an edge passes a joint of the wheel or of a roller, on a roller and over the rail's
+/// surface.
 ///
 /// Method: the abscissae of the profiles' points under both edges are followed from tip to tip; between two places on different sides
 /// of a joint a root is sought. Degenerate case: a joint that an edge passes twice between two of these places is left to the
 /// boundary's interpolants.
-pub(super) fn over_joints(by_roots: &mut ByRoots<'_>, band: &Band, corners: &mut Vec<f64>) {
+pub(super) fn over_joints(slicer: &mut Slicer<'_>, band: &Band, corners: &mut Vec<f64>) {
     let grading = band.grading();
-    let mut trail = JointTrail { by_roots, known: [[f64::NAN; 3]; 2] };
+    let mut trail = JointTrail { slicer, band, known: [[f64::NAN; 3]; 2] };
     let mut before = trail.feet(band.xi.low);
     for k in 1..=JOINT_PLACES {
         let xi = if k == JOINT_PLACES { band.xi.high } else { grading.xi(k as f64 / JOINT_PLACES as f64) };
@@ -105,7 +107,8 @@ struct EdgeFeet {
 
 /// Follows the points of the profiles under the edges of a band.
 struct JointTrail<'t, 'a> {
-    by_roots: &'t mut ByRoots<'a>,
+    slicer: &'t mut Slicer<'a>,
+    band: &'t Band,
     /// ξ, the square of half the width and the middle of two slices, from which others are guessed.
     known: [[f64; 3]; 2],
 }
@@ -113,23 +116,21 @@ struct JointTrail<'t, 'a> {
 impl JointTrail<'_, '_> {
     /// Finds the edges at ξ and the profiles' points under them; `None` outside the patch.
     fn feet(&mut self, xi: f64) -> Option<EdgeFeet> {
-        let near = self.by_roots.edges_near(xi, extrapolated(&self.known, xi));
-        let edges = near.or_else(|| Some(self.by_roots.edges(xi)?.map(|edge| edge.eta)))?;
+        let valley = self.band.valley(xi);
+        let near = self.slicer.edges_near(xi, valley, extrapolated(&self.known, xi));
+        let edges = near.or_else(|| Some(self.slicer.edges(xi, valley)?.map(|edge| edge.eta)))?;
         self.known = [self.known[1], halved(xi, edges)];
-        let mut abscissae = [[f64::NAN; 2]; 2];
-        for (side, eta) in edges.into_iter().enumerate() {
-            abscissae[side] = self.by_roots.level.at(xi, eta)?.abscissae;
-        }
+        let abscissae = edges.map(|eta| self.slicer.abscissae(xi, eta));
         Some(EdgeFeet { xi, edges, abscissae })
     }
 
     /// Appends the ξ between two places, to within `enough` \[mm\], at which an edge passes a joint.
     fn between(&mut self, ends: [&EdgeFeet; 2], enough: f64, corners: &mut Vec<f64>) {
-        let sides = if self.by_roots.skewed { 0..2 } else { 1..2 };
+        let sides = if self.slicer.placement().skew() == 0.0 { 1..2 } else { 0..2 };
         self.known = ends.map(|end| halved(end.xi, end.edges));
         for (side, body) in sides.flat_map(|side| [(side, 0), (side, 1)]) {
             let [from, to] = ends.map(|end| end.abscissae[side][body]);
-            let Some(section) = self.by_roots.level.sections()[body] else { continue };
+            let Some(section) = sections(self.slicer.placement())[body] else { continue };
             let over = Interval::between(from, to);
             let mut joints: Vec<f64> = section.joints(over).map(|(p, _)| p).collect();
             joints.dedup();
@@ -144,13 +145,9 @@ impl JointTrail<'_, '_> {
 
     /// Returns the abscissa \[mm\] of the point of one body under one edge at ξ; NaN where there is none.
     fn abscissa(&mut self, xi: f64, side: usize, body: usize) -> f64 {
-        let near = self.by_roots.edge_near(xi, extrapolated(&self.known, xi), side);
-        let edge = match near {
-            Some((eta, _)) => Some(eta),
-            None => self.by_roots.edges(xi).map(|edges| edges[side].eta),
-        };
-        let at = edge.and_then(|eta| self.by_roots.level.at(xi, eta));
-        at.map_or(f64::NAN, |at| at.abscissae[body])
+        let near = self.slicer.edge_near(xi, extrapolated(&self.known, xi), side);
+        let edge = near.or_else(|| Some(self.slicer.edges(xi, self.band.valley(xi))?[side].eta));
+        edge.map_or(f64::NAN, |eta| self.slicer.abscissae(xi, eta)[body])
     }
 }
 

@@ -1,16 +1,17 @@
 //! Finds both edges of 16 slices at once, where each edge lies over one piece of the wheel.
 //!
-//! At an edge the wheel stands at ζ = ζ^R(ξ) + δ. This gives the axle distance w of the edge, and with y = η′ in the wheel's own
+//! At an edge the wheel stands at ζ = ζ^R(ξ) + δ, or over the rail's surface at the raised point, of which ξ and ζ take their places. This gives the axle distance w of the edge, and with y = η′ in the wheel's own
 //! directions its sagitta e = y²/(w + ϱ), ϱ = √(w² + y²). The foot ξ′ − e sinθ of the edge lies on the profile at the height ζ − e cosθ.
-//! With m the slope of the chord from a profile point ξ_0 near the midplane to the foot, and g_0 = h(ξ_0) − ζ^R(ξ),
+//! With m the slope of the chord from a profile point ξ_0 near the midplane to the foot, and g_0 = h(ξ_0) − ζ,
 //!
 //! ```text
-//! (cosθ − m sinθ)/(w + ϱ) y² + m tanχ y + g_0 − δ + m (ξ/cosχ − ξ_0) = 0,   η = (y + ξ sinχ)/cosχ.
+//! (cosθ − m sinθ)/(w + ϱ) y² + m tanχ y + g_0 + m (ξ/cosχ − ξ_0) = 0,   η = (y + ξ sinχ)/cosχ.
 //! ```
 //!
 //! m, w and ϱ hardly change with y, so that the quadratic equation is solved anew with those of its last solution. It contracts by about e
 //! × curvature and tanχ × the turn of the profile, and it is exact at the tips, where y² follows without a difference of large numbers.
 
+use super::raised::RaisedLanes;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::placement::Placement;
@@ -32,8 +33,6 @@ const STEEPEST: f64 = 64.0;
 pub(super) struct EdgeFinder<'a> {
     rail: &'a Section,
     wheel: WheelSurface<'a>,
-    /// Approach δ \[mm\].
-    approach: f64,
     /// cos χ.
     cos: f64,
     /// sin χ.
@@ -46,13 +45,12 @@ pub(super) struct EdgeFinder<'a> {
 }
 
 impl<'a> EdgeFinder<'a> {
-    /// Makes the finder of a placed pair on a rail for approach δ \[mm\].
-    pub(super) fn new(placement: &'a Placement, approach: f64) -> Self {
+    /// Makes the finder of a placed pair on a rail.
+    pub(super) fn new(placement: &'a Placement) -> Self {
         let skew = placement.skew_rotation();
         Self {
             rail: &placement.rail().section,
             wheel: WheelSurface::new(placement),
-            approach,
             cos: skew.re,
             sin: skew.im,
             stretch: 2.0 * (placement.skew() / 2.0).sin().powi(2) / skew.re,
@@ -61,31 +59,31 @@ impl<'a> EdgeFinder<'a> {
         }
     }
 
-    /// Finds the lower and the upper edges \[mm\] at 16 values of ξ in the patch, at which s may only rise from one lowest place to
+    /// Finds the lower and the upper edges \[mm\] at 16 raised points in the patch, at which s may only rise from one lowest place to
     /// either side. Returns `None` unless the rail has one piece there, each edge lies over one piece of the wheel, which is no wall,
     /// and the wheel has no step on the way.
-    pub(super) fn edges(&mut self, xi: &Lanes) -> Option<[Lanes; 2]> {
-        let rail = self.rail.piece_at(xi[0])?;
-        let Interval { low, high } = rail.xi.cut(self.wheel.section.reach()?);
-        if !every::<MANY>(|k| (low <= xi[k]) & (xi[k] <= high)) {
+    pub(super) fn edges(&mut self, at: &RaisedLanes<MANY>) -> Option<[Lanes; 2]> {
+        let (rail, wheel) = (self.rail.piece_at(at.foot[MANY / 2])?, self.wheel.section.reach()?);
+        let over = |k: usize| rail.xi.contains(at.foot[k]) & wheel.contains(at.xi[k]);
+        if !every::<MANY>(over) {
             return None;
         }
-        let upper = self.side(xi, rail, 1)?;
-        let lower: Lanes = if self.sin == 0.0 { lanes(|k| -upper[k]) } else { self.side(xi, rail, 0)? };
+        let upper = self.side(at, rail, 1)?;
+        let lower: Lanes = if self.sin == 0.0 { lanes(|k| -upper[k]) } else { self.side(at, rail, 0)? };
         every::<MANY>(|k| lower[k] <= upper[k]).then_some([lower, upper])
     }
 
     /// Finds the lower (0) or the upper (1) edges.
-    fn side(&mut self, xi: &Lanes, rail: &Piece, side: usize) -> Option<Lanes> {
+    fn side(&mut self, at: &RaisedLanes<MANY>, rail: &Piece, side: usize) -> Option<Lanes> {
         let section = self.wheel.section;
-        let middle = xi[MANY / 2];
-        let mut index = self.pieces[side].map_or_else(|| index_at(section, middle), Some)?;
+        let middle = at.lane(MANY / 2);
+        let mut index = self.pieces[side].map_or_else(|| index_at(section, middle.xi[0]), Some)?;
         let inside = |index: usize, foot: f64| {
             let Interval { low, high } = section.pieces[index].xi;
             (low <= foot) & (foot <= high)
         };
         for _ in 0..PIECES {
-            let [_, [foot]] = self.solved(&[middle], rail, index, side)?;
+            let [_, [foot]] = self.solved(&middle, rail, index, side)?;
             if inside(index, foot) {
                 break;
             }
@@ -96,11 +94,11 @@ impl<'a> EdgeFinder<'a> {
         if !(-STEEPEST < slopes.low && slopes.high < STEEPEST) {
             return None;
         }
-        let [eta, foot] = self.arch.dispatch(Solve { finder: self, xi, rail, index, side })?;
+        let [eta, foot] = self.arch.dispatch(Solve { finder: self, at, rail, index, side })?;
         let passed = |step: &usize| {
             let joint = section.pieces[*step].xi.low;
             let end = section.pieces[*step - 1].xi.high;
-            (0..MANY).any(|k| xi[k].min(foot[k]) <= joint && end <= xi[k].max(foot[k]))
+            (0..MANY).any(|k| at.xi[k].min(foot[k]) <= joint && end <= at.xi[k].max(foot[k]))
         };
         (every::<MANY>(|k| inside(index, foot[k])) && !section.steps.iter().any(passed)).then_some(eta)
     }
@@ -110,18 +108,18 @@ impl<'a> EdgeFinder<'a> {
     #[inline(always)]
     fn solved<const N: usize>(
         &self,
-        xi: &Lanes<N>,
+        at: &RaisedLanes<N>,
         rail: &Piece,
         index: usize,
         side: usize,
     ) -> Option<[Lanes<N>; 2]> {
-        let (wheel, outwards) = (&self.wheel, if side == 0 { -1.0 } else { 1.0 });
+        let (wheel, xi, outwards) = (&self.wheel, &at.xi, if side == 0 { -1.0 } else { 1.0 });
         let piece = &wheel.section.pieces[index];
         let branch = &wheel.section.branches[piece.branch];
         let begin: Lanes<N> = lanes(|k| piece.xi.nearest(xi[k]));
         let (points, height) = branch.points(&begin)?;
-        let (_, rail_height) = self.rail.branches[rail.branch].points(xi)?;
-        let gap = self.gaps(xi, &begin, rail.branch, (piece.branch, &height), &rail_height)?;
+        let (_, rail_height) = self.rail.branches[rail.branch].points(&at.foot)?;
+        let gap = self.gaps(at, &begin, rail.branch, (piece.branch, &height), &rail_height)?;
         // ξ′ − ξ_0 for y = 0.
         let shift: Lanes<N> = lanes(|k| (xi[k] - begin[k]) + xi[k] * self.stretch);
         let tangent = self.sin / self.cos;
@@ -131,11 +129,11 @@ impl<'a> EdgeFinder<'a> {
             let mut foot = [0.0; N];
             for k in 0..N {
                 let reached = begin[k] + shift[k] + y[k] * tangent;
-                let w = wheel.axle_distance(reached, rail_height[k] + self.approach);
+                let w = wheel.axle_distance(reached, rail_height[k] + at.lift[k]);
                 let sum = w + (w * w + y[k] * y[k]).sqrt();
                 let rise = (wheel.cos - wheel.sin * slope[k]) / sum;
                 let half = 0.5 * slope[k] * tangent;
-                let rest = gap[k] - self.approach + slope[k] * shift[k];
+                let rest = gap[k] - at.lift[k] + slope[k] * shift[k];
                 let root = outwards * (half * half - rise * rest).sqrt();
                 let next = (root - half) / rise;
                 let step = (next - y[k]).abs();
@@ -156,11 +154,12 @@ impl<'a> EdgeFinder<'a> {
         None
     }
 
-    /// Computes h(ξ_0) − ζ^R(ξ) \[mm\] from both heights, and to full relative accuracy where ξ_0 = ξ is over both contact segments.
+    /// Computes how far the wheel's profile at ξ_0 lies above the rail's at the foot of a raised point \[mm\] from both heights, and to full
+    /// relative accuracy over both contact segments.
     #[inline(always)]
     fn gaps<const N: usize>(
         &self,
-        xi: &Lanes<N>,
+        at: &RaisedLanes<N>,
         begin: &Lanes<N>,
         rail: usize,
         (wheel, height): (usize, &Lanes<N>),
@@ -172,8 +171,17 @@ impl<'a> EdgeFinder<'a> {
             return Some(plain);
         }
         let [rail, wheel]: [&Branch; 2] = [&self.rail.branches[rail], &section.branches[wheel]];
-        let exact = contact_gaps(rail, wheel, begin, height)?;
-        Some(lanes(|k| if begin[k] == xi[k] { exact[k] } else { plain[k] }))
+        if every::<N>(|k| (at.foot[k] == begin[k]) | (at.foot[k] == at.xi[k])) {
+            let exact = contact_gaps(rail, wheel, begin, height)?;
+            return Some(lanes(|k| if begin[k] == at.foot[k] { exact[k] } else { plain[k] }));
+        }
+        if !every::<N>(|k| wheel.xi.contains(at.foot[k])) {
+            return Some(plain);
+        }
+        let (points, height) = wheel.points(&at.foot)?;
+        let (exact, slope) =
+            (contact_gaps(rail, wheel, &at.foot, &height)?, wheel.chords_from(&points, begin)?);
+        Some(lanes(|k| exact[k] + slope[k] * (begin[k] - at.foot[k])))
     }
 }
 
@@ -186,7 +194,7 @@ fn index_at(section: &Section, xi: f64) -> Option<usize> {
 /// Edges to be found by vector code.
 struct Solve<'f, 'a> {
     finder: &'f EdgeFinder<'a>,
-    xi: &'f Lanes,
+    at: &'f RaisedLanes<MANY>,
     rail: &'f Piece,
     index: usize,
     side: usize,
@@ -197,6 +205,6 @@ impl pulp::WithSimd for Solve<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Option<[Lanes; 2]> {
-        self.finder.solved(self.xi, self.rail, self.index, self.side)
+        self.finder.solved(self.at, self.rail, self.index, self.side)
     }
 }

@@ -2,19 +2,13 @@
 
 use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
 use crate::placement::Placement;
-use crate::profile::Section;
 use crate::separation::{Evaluator, GapSlopes};
 
 /// The gap whose level δ bounds the patch.
 #[derive(Debug)]
 pub(super) enum Level<'a> {
     /// s(ξ, η).
-    Plane {
-        /// The placed pair.
-        placement: &'a Placement,
-        /// Computes s.
-        evaluator: Evaluator<'a>,
-    },
+    Plane(Evaluator<'a>),
     /// t(σ, η) + δ (1 − cos α), which is δ where t is δ cos α.
     Rail {
         /// Computes t.
@@ -30,7 +24,7 @@ impl<'a> Level<'a> {
     /// Makes the gap of a placed pair over a surface, for an approach δ \[mm\].
     pub(super) fn new(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
         match reference {
-            Reference::Plane => Self::Plane { placement, evaluator: Evaluator::new(placement) },
+            Reference::Plane => Self::Plane(Evaluator::new(placement)),
             Reference::Rail => Self::Rail { gap: NormalGap::new(placement), approach, column: None },
         }
     }
@@ -38,35 +32,33 @@ impl<'a> Level<'a> {
     /// Returns the normal gap over the rail's surface; `None` over the tangent plane.
     pub(super) fn normal_gap(&self) -> Option<&NormalGap<'a>> {
         match self {
-            Self::Plane { .. } => None,
+            Self::Plane(_) => None,
             Self::Rail { gap, .. } => Some(gap),
-        }
-    }
-
-    /// Returns the sections along which a line of constant ξ or σ moves as η grows: the wheel's, and that of a roller.
-    pub(super) fn sections(&self) -> [Option<&'a Section>; 2] {
-        match self {
-            Self::Plane { placement, .. } => {
-                [Some(&placement.wheel().section), placement.under().map(|under| &under.wheel().section)]
-            }
-            Self::Rail { gap, .. } => gap.sections(),
         }
     }
 
     /// Returns the gap \[mm\]; NaN where a body has no surface.
     pub(super) fn gap(&mut self, xi: f64, eta: f64) -> f64 {
         match self {
-            Self::Plane { evaluator, .. } => evaluator.separation(xi, eta),
+            Self::Plane(evaluator) => evaluator.separation(xi, eta),
             Self::Rail { gap, approach, column } => known(gap, column, xi)
                 .map_or(f64::NAN, |column| gap.gap_in(column, eta) + *approach * versine(&column.rail)),
         }
+    }
+
+    /// Returns ξ \[mm\] of the wheel's point on the rail's normal; `None` over the tangent plane, and where the normal misses the wheel.
+    pub(super) fn along_normal(&mut self, sigma: f64, eta: f64) -> Option<f64> {
+        let Self::Rail { gap, column, .. } = self else { return None };
+        let column = known(gap, column, sigma)?;
+        let (t, rail) = (gap.gap_in(column, eta), column.rail);
+        Some(rail.xi - t * rail.sin).filter(|xi| !xi.is_nan())
     }
 
     /// Returns the gap, its slopes along ξ and η, and the abscissae of the profiles' points. Where a body has no surface the result is
     /// `None`, or the gap is NaN.
     pub(super) fn at(&mut self, xi: f64, eta: f64) -> Option<GapSlopes> {
         match self {
-            Self::Plane { evaluator, .. } => evaluator.gap_and_slopes(xi, eta),
+            Self::Plane(evaluator) => evaluator.gap_and_slopes(xi, eta),
             Self::Rail { gap, approach, column } => {
                 let column = known(gap, column, xi)?;
                 let mut at = gap.slopes_in(column, eta)?;

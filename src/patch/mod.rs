@@ -11,6 +11,7 @@ mod loops;
 mod measure;
 mod outline;
 mod plain;
+mod raised;
 pub(crate) mod skewed;
 mod slice;
 mod stretch;

@@ -13,7 +13,10 @@ use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
 
 /// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-11 of their distance.
-const SLOPE_NOISE: f64 = 1e-11;
+pub(super) const SLOPE_NOISE: f64 = 1e-11;
+
+/// Steps to the place of the least t, after which its error is rounding.
+const TO_NEAREST: usize = 2;
 
 /// What bounds a component at one of its ends in ξ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -55,14 +58,18 @@ impl<'a> Outline<'a> {
         let beside = BESIDE * placement.rolling_radius();
         let ends = wheel.pieces.iter().enumerate().flat_map(|(k, piece)| piece.xi.ends().map(|p| (k, p)));
         let crossed = ends.map(|(k, p)| turned.xi_at(k, p, eta)).flat_map(|xi| [xi - beside, xi + beside]);
-        let joints = placement.rail().section.joints(over).flat_map(|(xi, _)| [xi, xi.next_up()]);
+        let crossed = crossed.flat_map(|xi| match &self.slicer.skewed {
+            Some(skewed) => skewed.raised.sigmas(xi, over),
+            None => vec![xi],
+        });
+        let joints = self.slicer.joints(over).into_iter().flat_map(|xi| [xi, xi.next_up()]);
         let mut places: Vec<f64> =
             crossed.chain(joints).chain(over.ends()).filter(|xi| over.contains(*xi)).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
         let mut turns = Vec::new();
         for pair in places.windows(2) {
-            let slope = |xi: &Lanes| xi.map(|xi| self.slicer.gradient(xi, eta)[0]);
+            let slope = |xi: &Lanes| xi.map(|xi| self.slicer.slope_along(xi, eta));
             sign_changes(slope, Interval::new(pair[0], pair[1]), SLOPE_NOISE, &mut turns);
         }
         places.append(&mut turns);
@@ -93,7 +100,7 @@ impl<'a> Outline<'a> {
         let floor = self.floor(valley, xi);
         match (&mut self.slicer.skewed, valley) {
             (Some(skewed), Some(valley)) => {
-                let spot = skewed.valleys.spot(valley, xi);
+                let spot = skewed.spot(valley, xi);
                 if spot.eta == floor || floor.is_nan() {
                     return skewed.depth_at(xi, &spot);
                 }
@@ -107,12 +114,25 @@ impl<'a> Outline<'a> {
             _ if floor == 0.0 && self.slicer.by_roots.is_none() => return self.slicer.depth(xi),
             _ => {}
         }
-        self.slicer.separation(xi, floor) - self.slicer.approach()
+        self.slicer.miss(xi, floor)
+    }
+
+    /// Appends the σ inside a range \[mm\] at which the least t over a valley turns.
+    pub(super) fn turns_over_rail(&mut self, valley: usize, over: Interval, turns: &mut Vec<f64>) {
+        let mut slope = |sigma: f64| {
+            let eta = self.nearest_to_rail(Some(valley), sigma, 1);
+            self.slicer.gradient(sigma, eta)[0]
+        };
+        sign_changes(|sigma: &Lanes| sigma.map(&mut slope), over, SLOPE_NOISE, turns);
+    }
+
+    fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64, steps: usize) -> f64 {
+        self.window.eta.nearest(self.slicer.nearest_to_rail(valley, xi, steps))
     }
 
     /// Returns \[s, ξ, η\] of the least s at ξ within the window; with skew, over `valley`.
     pub(super) fn lowest(&mut self, valley: Option<usize>, xi: f64) -> [f64; 3] {
-        let floor = self.floor(valley, xi);
+        let floor = self.nearest_to_rail(valley, xi, TO_NEAREST);
         let [s, eta] = self.slicer.on_surface(xi, floor);
         [s, xi, eta]
     }

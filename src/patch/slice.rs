@@ -5,7 +5,8 @@
 
 use super::by_roots::ByRoots;
 use super::level::Level;
-use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed, between};
+use super::raised::RaisedLanes;
+use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed, between, on_surface};
 use super::varying::Varying;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
@@ -46,10 +47,12 @@ pub struct Slicer<'a> {
     wheel: WheelSurface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// The slices of swept bodies on a roller, or over the rail's surface; `None` over the tangent plane of a rail.
+    /// The slices of swept bodies on a roller; `None` on a rail.
     pub(super) by_roots: Option<ByRoots<'a>>,
-    /// The slices under a skewed wheel over the tangent plane of a rail, both swept; otherwise `None`.
+    /// The slices of swept bodies on a rail, under a skewed wheel or over the rail's surface; otherwise `None`.
     pub(super) skewed: Option<Skewed<'a>>,
+    /// The normal gap of these slices over the rail's surface; otherwise `None`.
+    normal: Option<Level<'a>>,
     /// The slices where a body varies; `None` where both are swept.
     pub(super) varying: Option<Varying<'a>>,
     approach: f64,
@@ -65,16 +68,19 @@ impl<'a> Slicer<'a> {
     pub(super) fn over(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
         let level = || Level::new(placement, approach, reference);
         let (varies, on_roller) = (placement.lofted().is_some(), placement.under().is_some());
-        let by_roots = !varies && (on_roller || reference == Reference::Rail);
-        let skewed = !varies && !by_roots && placement.skew() != 0.0;
+        let on_rail = !varies && !on_roller;
+        let normal = (on_rail && reference == Reference::Rail).then(level);
+        let surface = normal.as_ref().and_then(Level::normal_gap).map(|gap| gap.rail().clone());
+        let skewed = on_rail && (surface.is_some() || placement.skew() != 0.0);
         Self {
             placement,
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            by_roots: by_roots.then(|| ByRoots::new(placement, approach, level())),
-            skewed: skewed.then(|| Skewed::new(placement, approach)),
+            by_roots: (on_roller && !varies).then(|| ByRoots::new(placement, approach, level())),
+            skewed: skewed.then(|| Skewed::new(placement, approach, surface)),
             varying: varies.then(|| Varying::new(placement, approach, level())),
+            normal,
             approach,
         }
     }
@@ -82,12 +88,12 @@ impl<'a> Slicer<'a> {
     /// Returns the gap whose level bounds the patch; `None` where it is s over the tangent plane of swept bodies on a rail.
     fn level(&self) -> Option<&Level<'a>> {
         let of_roots = || self.by_roots.as_ref().map(|by_roots| &by_roots.level);
-        self.varying.as_ref().map(|varying| &varying.level).or_else(of_roots)
+        self.varying.as_ref().map(|varying| &varying.level).or_else(of_roots).or(self.normal.as_ref())
     }
 
     fn level_mut(&mut self) -> Option<&mut Level<'a>> {
         let of_roots = self.by_roots.as_mut().map(|by_roots| &mut by_roots.level);
-        self.varying.as_mut().map(|varying| &mut varying.level).or(of_roots)
+        self.varying.as_mut().map(|varying| &mut varying.level).or(of_roots).or(self.normal.as_mut())
     }
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
@@ -147,6 +153,23 @@ impl<'a> Slicer<'a> {
         }
     }
 
+    /// Returns how far the wheel lies above what bounds the patch at a point \[mm\]: s − δ, or over the rail's surface its height over
+    /// the raised point.
+    pub(super) fn miss(&mut self, xi: f64, eta: f64) -> f64 {
+        match &mut self.skewed {
+            Some(skewed) => skewed.raised.gap(xi, eta),
+            None => self.separation(xi, eta) - self.approach,
+        }
+    }
+
+    /// Returns the slope of [`Self::miss`] along ξ.
+    pub(super) fn slope_along(&mut self, xi: f64, eta: f64) -> f64 {
+        match &mut self.skewed {
+            Some(skewed) => skewed.raised.slope_along(xi, eta),
+            None => self.gradient(xi, eta)[0],
+        }
+    }
+
     /// Returns the interval of η at ξ, or `None` outside the patch. With skew it is the deepest of several intervals. The
     /// interval has no width at a tip. It ends where the wheel's surface ends along η, if that is before s reaches δ.
     ///
@@ -183,6 +206,31 @@ impl<'a> Slicer<'a> {
         }
     }
 
+    /// Returns one end of the slice at ξ \[mm\] next to a guess of both, as [`Self::edges_near`] does.
+    pub(super) fn edge_near(&mut self, xi: f64, guess: [f64; 2], side: usize) -> Option<f64> {
+        match &mut self.by_roots {
+            Some(by_roots) => by_roots.edge_near(xi, guess, side).map(|(eta, _)| eta),
+            None => self.skewed.as_mut()?.edge_near(xi, guess, side),
+        }
+    }
+
+    /// Returns the abscissae \[mm\] of the points of the wheel's and of a roller's profile from which the surfaces at a place are swept;
+    /// NaN where there is none.
+    pub(super) fn abscissae(&mut self, xi: f64, eta: f64) -> [f64; 2] {
+        match &mut self.skewed {
+            Some(skewed) => [skewed.raised.abscissa(xi, eta), f64::NAN],
+            None => {
+                self.level_mut().and_then(|level| level.at(xi, eta)).map_or([f64::NAN; 2], |at| at.abscissae)
+            }
+        }
+    }
+
+    /// Returns the raised points at 16 ξ \[mm\] of a rail.
+    pub(super) fn raised(&self, xi: &Lanes) -> RaisedLanes<MANY> {
+        let over_plane = || RaisedLanes::over_plane(xi, self.approach);
+        self.skewed.as_ref().map_or_else(over_plane, |skewed| skewed.raised.lanes(xi))
+    }
+
     /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, with skew that of `valley`, up to both
     /// edges \[mm\].
     pub(super) fn has_one_valley(
@@ -191,12 +239,13 @@ impl<'a> Slicer<'a> {
         [low, high]: &[Lanes; 2],
         valley: impl Fn(f64) -> Option<usize>,
     ) -> bool {
-        self.skewed.as_ref().is_none_or(|Skewed { valleys, .. }| {
+        self.skewed.as_ref().is_none_or(|Skewed { valleys, raised, .. }| {
+            let places = raised.lanes(xi).xi;
             let alone = |k: usize| {
                 let eta = Interval::new(low[k], high[k]);
-                valley(xi[k]).is_some_and(|valley| valleys.is_alone_within(valley, xi[k], eta))
+                valley(xi[k]).is_some_and(|valley| valleys.is_alone_within(valley, places[k], eta))
             };
-            valleys.is_one_between(Interval::between(xi[0], xi[MANY - 1])) || (0..MANY).all(alone)
+            valleys.is_one_between(Interval::around(places)) || (0..MANY).all(alone)
         })
     }
 
@@ -240,7 +289,7 @@ impl<'a> Slicer<'a> {
             return by_roots.lowest(xi);
         }
         let Some(skewed) = &mut self.skewed else { return 0.0 };
-        skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.valleys.spot(valley, xi).eta)
+        skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.spot(valley, xi).eta)
     }
 
     /// Returns η of a valley at ξ \[mm\]; 0 without skew.
@@ -252,14 +301,31 @@ impl<'a> Slicer<'a> {
             return by_roots.lowest(xi);
         }
         let places = self.skewed.as_ref().zip(valley);
-        places.map_or(0.0, |(skewed, valley)| skewed.valleys.spot(valley, xi).eta)
+        places.map_or(0.0, |(skewed, valley)| skewed.spot(valley, xi).eta)
+    }
+
+    /// Returns η \[mm\] of the least gap over a valley at ξ; 0 without skew.
+    ///
+    /// Method: over the rail's surface the least t lies on the valley where the normal meets it, δ cos α − t below the raised point. It is
+    /// found in `steps`, each of which makes the error of t, which is the square of that of η, a millionth.
+    pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64, steps: usize) -> f64 {
+        let mut eta = self.valley(valley, xi);
+        if let (Some(skewed), Some(level), Some(valley)) = (&self.skewed, &mut self.normal, valley) {
+            let steps = if skewed.valleys.is_turned() { steps } else { 0 };
+            for _ in 0..steps {
+                let Some(along) = level.along_normal(xi, eta) else { break };
+                eta = skewed.valleys.spot(valley, along).eta;
+            }
+        }
+        eta
     }
 
     /// Returns \[s, η\] \[mm\]. If rounding ends the surface too early, it returns a place on the surface next to η.
     pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        match &mut self.skewed {
-            Some(skewed) => skewed.on_surface(xi, eta),
-            None => [self.separation(xi, eta), eta],
+        if self.skewed.is_some() {
+            on_surface(self.placement, eta, |eta| self.separation(xi, eta))
+        } else {
+            [self.separation(xi, eta), eta]
         }
     }
 

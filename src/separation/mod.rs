@@ -46,5 +46,6 @@ pub use grid::{Choice, Method};
 pub use lower::{LowerBody, LowerSurface};
 pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
 pub use plan::{Plan, plan};
+pub(crate) use relief::{Relief, ReliefPoint};
 pub use values::Values;
 pub(crate) use wheel_surface::{WheelSurface, sagitta};

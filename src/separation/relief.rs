@@ -97,7 +97,12 @@ impl<'a> Relief<'a> {
 
     /// Computes the relief \[mm\] of a point over ξ.
     pub fn height_at(&self, xi: f64, point: &ReliefPoint) -> f64 {
-        self.base(xi, point.shift, &point.span) + point.point.rise
+        self.height_over(xi, 0.0, point)
+    }
+
+    /// Computes how far a point over ξ + `moved` \[mm\] lies above the profile at ξ \[mm\].
+    pub fn height_over(&self, xi: f64, moved: f64, point: &ReliefPoint) -> f64 {
+        self.base(xi, moved + point.shift, &point.span) + point.point.rise
     }
 
     /// Computes the relief at η = 0 \[mm\] without skew; NaN where a body has no surface.
@@ -108,6 +113,12 @@ impl<'a> Relief<'a> {
     /// Returns the abscissa \[mm\] of the profile's point whose circle about the axle holds a point of the surface.
     pub fn abscissa(&self, point: &ReliefPoint) -> f64 {
         self.wheel.abscissa(point.xi_w, point.point.e)
+    }
+
+    /// Computes \[∂ζ/∂ξ, ∂ζ/∂η\] of the surface.
+    pub fn slopes(&self, point: &ReliefPoint) -> [f64; 2] {
+        let down = self.normal(point);
+        [-down.x / down.z, -down.y / down.z]
     }
 
     /// Computes the unit normal in (ξ, η, ζ) that points down.

@@ -1,6 +1,6 @@
 //! Finds the ξ at which the intervals of a patch under a skewed wheel begin, end, divide or join.
 
-use super::monotone::monotone;
+use super::monotone::{along_surface, monotone};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::band::Turn;
@@ -24,28 +24,47 @@ pub(in crate::patch) struct Events {
 pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: Interval) -> Events {
     let mut events = Events::default();
     let approach = outline.slicer.approach();
-    let rail = &outline.slicer.placement().rail().section;
     let count = outline.slicer.skewed.as_ref().map_or(0, |skewed| skewed.valleys.creases.len());
-    let mut intervals = Vec::new();
+    let over_rail = outline.slicer.is_over_rail();
+    let raised = outline.slicer.skewed.as_ref().map(|skewed| &skewed.raised);
+    let pieces: Vec<_> = raised.into_iter().flat_map(|raised| raised.pieces(range)).collect();
+    let (mut intervals, mut level) = (Vec::new(), Vec::new());
     for crease in 0..count {
         let Some(skewed) = &mut outline.slicer.skewed else { break };
         let is_valley = skewed.valleys.creases[crease].is_valley;
-        for xi in skewed.valleys.creases[crease].xi.ends() {
-            // Where s is above δ, nothing begins or ends.
-            let above = skewed.depth(crease, xi) > 0.0;
-            events.xi.extend((!above && range.surrounds(xi)).then_some(xi));
+        for end in skewed.valleys.creases[crease].xi.ends() {
+            for xi in skewed.raised.sigmas(end, range) {
+                // Where s is above δ, nothing begins or ends.
+                let above = skewed.depth(crease, xi) > 0.0;
+                events.xi.extend((!above && range.surrounds(xi)).then_some(xi));
+            }
         }
         intervals.clear();
-        let matters = |s: Interval| s.low < approach && (is_valley || s.high > approach);
-        monotone(&skewed.valleys, rail, crease, range, matters, &mut intervals);
+        level.clear();
+        if over_rail {
+            along_surface(&skewed.valleys, (&skewed.raised, &pieces), crease, &mut intervals, &mut level);
+        } else {
+            let matters = |s: Interval| s.low < approach && (is_valley || s.high > approach);
+            monotone(&skewed.valleys, skewed.raised.rail(), crease, range, matters, &mut intervals);
+        }
         for interval in &intervals {
             let ends = [interval.low.next_up(), interval.high];
             let depths = ends.map(|xi| crease_depth(outline, crease, xi));
             passes(outline, crease, (ends, depths), &mut events);
-            if is_valley {
+            if is_valley && !over_rail {
                 let turn = |end: usize| Turn { valley: Some(crease), xi: ends[end], depth: depths[end] };
                 events.turns.extend([turn(0), turn(1)]);
             }
+        }
+        if is_valley {
+            level.sort_by(|a, b| a.low.total_cmp(&b.low));
+            level.dedup();
+            let mut turns: Vec<f64> = level.iter().flat_map(|piece| piece.ends()).collect();
+            level.iter().for_each(|&piece| outline.turns_over_rail(crease, piece, &mut turns));
+            turns.sort_by(f64::total_cmp);
+            turns.dedup();
+            let turn = |xi: f64| Turn { valley: Some(crease), xi, depth: f64::NAN };
+            events.turns.extend(turns.into_iter().map(turn));
         }
     }
     events

@@ -60,7 +60,10 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn
     let turns = std::mem::take(&mut events.turns);
     let placement = outline.slicer.placement();
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    let rail_steps: Vec<f64> = steps(&placement.rail().section, over, extent).collect();
+    let mut rail_steps = Vec::new();
+    if !outline.slicer.is_over_rail() {
+        rail_steps.extend(steps(&placement.rail().section, over, extent));
+    }
     let mut all = [&events.xi[..], &rail_steps, &over.ends()].concat();
     all.sort_by(f64::total_cmp);
     all.dedup();
@@ -74,21 +77,22 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn
     (walk.done, turns)
 }
 
-/// Returns the range of ξ that the rail, the window and the valleys have in common; `None` if it is empty.
+/// Returns the range of ξ that the rail, the window and, over the tangent plane, the valleys have in common; `None` if it is empty.
 fn searched(outline: &Outline<'_>) -> Option<Interval> {
-    let reach = outline.slicer.placement().rail().section.reach()?;
-    let creases = &outline.slicer.skewed.as_ref()?.valleys.creases;
-    let valleys = creases.iter().filter(|crease| crease.is_valley);
-    let under = valleys.fold(Interval::NONE, |under, crease| under.hull(crease.xi));
-    Some(outline.window.xi.cut(reach).cut(under)).filter(|over| over.has_width())
+    let skewed = outline.slicer.skewed.as_ref()?;
+    let mut over = outline.window.xi.cut(skewed.raised.reach()?);
+    if !outline.slicer.is_over_rail() {
+        let valleys = skewed.valleys.creases.iter().filter(|crease| crease.is_valley);
+        over = over.cut(valleys.fold(Interval::NONE, |under, crease| under.hull(crease.xi)));
+    }
+    Some(over).filter(|over| over.has_width())
 }
 
 /// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
 fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
     let near = TOUCH * outline.slicer.placement().rolling_radius();
     let Some(skewed) = &outline.slicer.skewed else { return Vec::new() };
-    let valleys = &skewed.valleys;
-    let over: Vec<usize> = valleys.over(xi).filter(|&k| valleys.creases[k].is_valley).collect();
+    let over: Vec<usize> = skewed.over(xi).filter(|&k| skewed.valleys.creases[k].is_valley).collect();
     let places = over.into_iter().map(|crease| {
         let depth = outline.depth(Some(crease), xi);
         Inside { eta: outline.slicer.valley(Some(crease), xi), depth, crease }
@@ -222,9 +226,8 @@ impl LaneWalk<'_, '_> {
     fn meeting_point(&self, xi: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = from + (to - from) / 2.0;
         let Some(skewed) = &self.outline.slicer.skewed else { return middle };
-        let valleys = &skewed.valleys;
-        let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
-        let places = ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi));
+        let ridges = skewed.over(xi).filter(|&k| !skewed.valleys.creases[k].is_valley);
+        let places = ridges.map(|k| skewed.spot(k, xi).eta).chain(skewed.rims(xi));
         let between = places.filter(|&eta| Interval::between(from, to).contains(eta));
         let nearest = between.min_by(|p, q| (p - middle).abs().total_cmp(&(q - middle).abs()));
         nearest.unwrap_or(middle)

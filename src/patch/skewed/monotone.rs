@@ -7,6 +7,7 @@ use super::valleys::Valleys;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::sign_changes::sign_changes;
+use crate::patch::raised::{Raised, RaisedPiece};
 use crate::profile::{Branch, Section, Station};
 
 /// Angle between the surfaces below which its sign does not count. Turns that are missed change s by less than 1e-13 of their
@@ -63,6 +64,57 @@ pub(crate) fn monotone(
                     intervals.push(Interval::new(left, turn));
                     left = turn;
                 }
+            }
+        }
+    }
+}
+
+/// Appends the intervals of σ \[mm\] over which the height of a valley or ridge over the raised rail is monotone, as [`monotone`] does for
+/// s over the tangent plane. A part is left out if all of a valley is above it, or all of a ridge below. Appends to `level` the ranges
+/// of σ over which the valley may be parallel to the rail, raised by up to δ.
+///
+/// Method: as there, with bounds of both directions of the raised curve in place of the rail's slope.
+pub(super) fn along_surface(
+    valleys: &Valleys<'_>,
+    (raised, pieces): (&Raised<'_>, &[RaisedPiece]),
+    crease: usize,
+    intervals: &mut Vec<Interval>,
+    level: &mut Vec<Interval>,
+) {
+    let is_valley = valleys.creases[crease].is_valley;
+    for leg in &valleys.creases[crease].legs {
+        let (legs, slopes) = (Interval::from(leg.xi), valleys.slopes(leg));
+        for piece in pieces {
+            let [run, rise] = piece.direction;
+            let xi = piece.bounds[0].cut(legs);
+            if !xi.has_width() {
+                continue;
+            }
+            let ends = xi.ends().map(|xi| valleys.place(leg, valleys.parameter(leg, xi)).1);
+            let most = slopes.magnitude() * xi.width();
+            let heights = Interval::between(ends[0], ends[1]).grown(most);
+            let gap = heights + -piece.bounds[1];
+            if if is_valley { gap.low > 0.0 } else { gap.high < 0.0 } {
+                continue;
+            }
+            let growth = rise + -(slopes * run);
+            let may_turn = !(growth.low > 0.0 || growth.high < 0.0);
+            if may_turn && level.last() != Some(&piece.sigma) {
+                level.push(piece.sigma);
+            }
+            let angle = |sigma: f64| {
+                let [run, rise] = raised.direction(sigma);
+                let (_, _, direction) = valleys.place(leg, valleys.parameter(leg, raised.xi(sigma)));
+                direction.y * run - direction.x * rise
+            };
+            for over in raised.runs(piece).into_iter().filter_map(|run| raised.over(run, legs)) {
+                let mut ends = vec![over.low];
+                if may_turn {
+                    sign_changes(|sigma: &Lanes| sigma.map(angle), over, ANGLE_NOISE, &mut ends);
+                    ends.retain(|end| *end == over.low || over.surrounds(*end));
+                }
+                ends.push(over.high);
+                intervals.extend(ends.windows(2).map(|pair| Interval::new(pair[0], pair[1])));
             }
         }
     }

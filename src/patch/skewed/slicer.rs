@@ -1,15 +1,17 @@
-//! Finds the slices under a skewed wheel, from a valley outwards to s = δ.
+//! Finds the slices under a skewed wheel, and over the rail's surface, from a valley outwards to s = δ.
 //!
 //! Along a line of constant ξ, s is monotone between neighbouring special places: the lowest and highest points of the
 //! wheel, and the ends and steps of its surface. All these places are known, and the search moves outwards from one to the
-//! next.
+//! next. Over the rail's surface the line runs through the raised point at σ; what is said of ξ and s − δ here holds for σ and the
+//! wheel's height over that point.
 
 use super::circle::BESIDE;
 use super::valleys::{ValleySpot, Valleys};
+use crate::conformal::RailArcLength;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::raised::Raised;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
 
 /// Least step of the wheel along a column, in roundings of its height. A smaller one is a smooth joint whose two sides
 /// round differently.
@@ -70,43 +72,76 @@ pub(in crate::patch) fn newton_from(
     None
 }
 
-/// Finds the slices under a skewed wheel at one approach.
+/// Returns what `of` gives at η, and η \[mm\]; at a place next to η if rounding ends the surface too early.
+pub(in crate::patch) fn on_surface(
+    placement: &Placement,
+    eta: f64,
+    mut of: impl FnMut(f64) -> f64,
+) -> [f64; 2] {
+    let rounding = f64::EPSILON * placement.rolling_radius();
+    let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
+    let mut near = steps.map(|n| eta + n * rounding).map(|eta| [of(eta), eta]);
+    near.find(|[found, _]| !found.is_nan()).unwrap_or([f64::NAN, eta])
+}
+
+/// Finds the slices under a skewed wheel, or over the rail's surface, at one approach.
 #[derive(Debug)]
 pub(in crate::patch) struct Skewed<'a> {
     placement: &'a Placement,
-    evaluator: Evaluator<'a>,
+    pub(in crate::patch) raised: Raised<'a>,
     /// The wheel's valleys and ridges.
     pub(in crate::patch) valleys: Valleys<'a>,
-    /// Approach δ \[mm\].
-    approach: f64,
     /// The η \[mm\] at which s may turn or end along the present line of constant ξ.
     stops: Vec<f64>,
 }
 
 impl<'a> Skewed<'a> {
-    /// Makes the slices of a placed pair for approach δ \[mm\].
-    pub(in crate::patch) fn new(placement: &'a Placement, approach: f64) -> Self {
-        let (evaluator, valleys) = (Evaluator::new(placement), Valleys::new(placement));
-        Self { placement, evaluator, valleys, approach, stops: Vec::new() }
+    /// Makes the slices of a placed pair for approach δ \[mm\], over the tangent plane or over the rail's `surface`.
+    pub(in crate::patch) fn new(
+        placement: &'a Placement,
+        approach: f64,
+        surface: Option<RailArcLength<'a>>,
+    ) -> Self {
+        let (raised, valleys) = (Raised::new(placement, approach, surface), Valleys::new(placement));
+        Self { placement, raised, valleys, stops: Vec::new() }
+    }
+
+    /// Returns the place of a valley or ridge at ξ.
+    pub(in crate::patch) fn spot(&self, crease: usize, xi: f64) -> ValleySpot {
+        self.valleys.spot(crease, self.raised.xi(xi))
+    }
+
+    /// Returns the indices of the valleys and ridges over ξ.
+    pub(in crate::patch) fn over(&self, xi: f64) -> impl Iterator<Item = usize> {
+        self.valleys.over(self.raised.xi(xi))
+    }
+
+    /// Returns the η at which the line of constant ξ meets ends and steps of the wheel's surface \[mm\].
+    pub(in crate::patch) fn rims(&self, xi: f64) -> impl Iterator<Item = f64> {
+        self.valleys.rims(self.raised.xi(xi))
     }
 
     /// Returns s − δ at the place of a valley or ridge \[mm\].
     pub(in crate::patch) fn depth(&mut self, crease: usize, xi: f64) -> f64 {
-        let spot = self.valleys.spot(crease, xi);
+        let spot = self.spot(crease, xi);
         self.depth_at(xi, &spot)
     }
 
     /// Returns s − δ at a place of a valley or ridge that is already known \[mm\].
     pub(in crate::patch) fn depth_at(&mut self, xi: f64, spot: &ValleySpot) -> f64 {
-        self.valleys.separation(&mut self.evaluator, xi, spot) - self.approach
+        let (at, raised) = (self.raised.at(xi), &mut self.raised);
+        let below = raised.rail().height(at.foot);
+        let over = |moved: f64| raised.over_profile(xi + moved, spot.eta);
+        self.valleys.separation(spot, below, over) - at.moved[1]
     }
 
     /// Returns the valley with the least s at ξ; `None` where there is no valley.
     pub(in crate::patch) fn lowest_valley(&mut self, xi: f64) -> Option<usize> {
         let mut lowest: Option<(f64, usize)> = None;
+        let place = self.raised.xi(xi);
         for k in 0..self.valleys.creases.len() {
             let crease = &self.valleys.creases[k];
-            if !crease.is_valley || xi < crease.xi.low || crease.xi.high < xi {
+            if !crease.is_valley || place < crease.xi.low || crease.xi.high < place {
                 continue;
             }
             let depth = self.depth(k, xi);
@@ -117,17 +152,9 @@ impl<'a> Skewed<'a> {
         lowest.map(|(_, k)| k)
     }
 
-    /// Returns \[s, η\] \[mm\], at a place next to η if rounding ends the surface too early.
-    pub(in crate::patch) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        let rounding = f64::EPSILON * self.placement.rolling_radius();
-        let steps = std::iter::once(0.0).chain((0..NUDGES).flat_map(|k| [4f64.powi(k), -4f64.powi(k)]));
-        let mut near = steps.map(|n| eta + n * rounding).map(|eta| [self.evaluator.separation(xi, eta), eta]);
-        near.find(|[s, _]| !s.is_nan()).unwrap_or([f64::NAN, eta])
-    }
-
     /// Returns both ends of the slice that holds a valley; `None` outside the patch.
     pub(in crate::patch) fn edges(&mut self, xi: f64, valley: usize) -> Option<[Edge; 2]> {
-        let spot = self.valleys.spot(valley, xi);
+        let spot = self.spot(valley, xi);
         let depth = -self.depth_at(xi, &spot);
         if depth.is_nan() || depth < 0.0 {
             return None;
@@ -137,18 +164,20 @@ impl<'a> Skewed<'a> {
         // The wheel rises by about η²/2R. Twice that width is enough except for steep profiles.
         let radius = self.placement.rolling_radius();
         let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
-        let edges = [-1.0, 1.0].map(|side| self.outward(xi, spot.eta, side * reach, &mut stops));
+        let upper = self.outward(xi, spot.eta, reach, &mut stops);
+        let mirrored = Edge { eta: -upper.eta, ..upper };
+        let lower =
+            if self.valleys.is_turned() { self.outward(xi, spot.eta, -reach, &mut stops) } else { mirrored };
         self.stops = stops;
-        Some(edges)
+        Some([lower, upper])
     }
 
     /// Collects the η at which s may turn or end. There are none if only one valley is at ξ.
     fn stops_at(&self, xi: f64, stops: &mut Vec<f64>) {
         stops.clear();
-        let valleys = &self.valleys;
-        if valleys.over(xi).nth(1).is_some() {
-            let ridges = valleys.over(xi).filter(|&k| !valleys.creases[k].is_valley);
-            stops.extend(ridges.map(|k| valleys.spot(k, xi).eta).chain(valleys.rims(xi)));
+        if self.over(xi).nth(1).is_some() {
+            let ridges = self.over(xi).filter(|&k| !self.valleys.creases[k].is_valley);
+            stops.extend(ridges.map(|k| self.spot(k, xi).eta).chain(self.rims(xi)));
         }
     }
 
@@ -158,27 +187,31 @@ impl<'a> Skewed<'a> {
     pub(in crate::patch) fn edges_near(
         &mut self,
         (xi, valley): (f64, usize),
-        [low, high]: [f64; 2],
+        guess: [f64; 2],
     ) -> Option<[f64; 2]> {
-        let near = NEAR_GUESS * (high - low);
-        let alone = self.valleys.over(xi).nth(1).is_none()
-            || self.valleys.is_alone_within(valley, xi, Interval::new(low, high).grown(near));
+        let [low, high] = guess;
+        let around = Interval::new(low, high).grown(NEAR_GUESS * (high - low));
+        let alone = self.over(xi).nth(1).is_none()
+            || self.valleys.is_alone_within(valley, self.raised.xi(xi), around);
         if !alone {
             return None;
         }
-        let mut miss = |eta: f64| {
-            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
-            Some([s - self.approach, slope])
-        };
-        Some([newton_from(&mut miss, low, -1.0, near)?, newton_from(&mut miss, high, 1.0, near)?])
+        let upper = self.edge_near(xi, guess, 1)?;
+        Some([if self.valleys.is_turned() { self.edge_near(xi, guess, 0)? } else { -upper }, upper])
+    }
+
+    /// Returns one end of a slice by Newton's steps from a guess of both. `None` as for [`newton_from`].
+    pub(in crate::patch) fn edge_near(&mut self, xi: f64, [low, high]: [f64; 2], side: usize) -> Option<f64> {
+        let (guess, outward) = ([low, high][side], [-1.0, 1.0][side]);
+        newton_from(|eta| self.raised.gap_and_slope(xi, eta), guess, outward, NEAR_GUESS * (high - low))
     }
 
     /// Returns the end of the slice on one side of its lowest point.
     fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
-        let [s, mut from] = self.on_surface(xi, lowest);
-        let beyond = self.evaluator.separation(xi, from + beside);
-        if s.is_nan() || (from != lowest && (beyond.is_nan() || beyond >= self.approach)) {
+        let [depth, mut from] = on_surface(self.placement, lowest, |eta| self.raised.gap(xi, eta));
+        let beyond = self.raised.gap(xi, from + beside);
+        if depth.is_nan() || (from != lowest && (beyond.is_nan() || beyond >= 0.0)) {
             return Edge { eta: from, ledge: true };
         }
         let away = |stop: &f64| (stop - lowest) * reach.signum();
@@ -188,8 +221,8 @@ impl<'a> Skewed<'a> {
                 if (place - from) * reach <= 0.0 {
                     continue;
                 }
-                let s = self.evaluator.separation(xi, place);
-                if s.is_nan() || s >= self.approach {
+                let depth = self.raised.gap(xi, place);
+                if depth.is_nan() || depth >= 0.0 {
                     return self.edge(xi, from, reach, place);
                 }
                 from = place;
@@ -201,12 +234,12 @@ impl<'a> Skewed<'a> {
     /// Returns the end of the slice between `from` and `limit`, over which s only rises.
     fn edge(&mut self, xi: f64, from: f64, mut reach: f64, limit: f64) -> Edge {
         let clipped = |reach: f64| if (from + reach - limit) * reach > 0.0 { limit } else { from + reach };
-        let (mut far, mut there) = (clipped(reach), self.evaluator.separation(xi, clipped(reach)));
+        let (mut far, mut there) = (clipped(reach), self.raised.gap(xi, clipped(reach)));
         // The search ends at the latest where the column leaves the wheel.
-        while there < self.approach {
+        while there < 0.0 {
             reach *= 2.0;
             far = clipped(reach);
-            there = self.evaluator.separation(xi, far);
+            there = self.raised.gap(xi, far);
         }
         if there.is_nan() { self.end_between(xi, from, far) } else { self.level_between(xi, from, far) }
     }
@@ -214,7 +247,7 @@ impl<'a> Skewed<'a> {
     /// Returns the end of the slice if the surface ends between `from` and `off`.
     fn end_between(&mut self, xi: f64, from: f64, off: f64) -> Edge {
         let end = self.surface_end(xi, from, off);
-        if self.evaluator.separation(xi, end) < self.approach {
+        if self.raised.gap(xi, end) < 0.0 {
             return Edge { eta: end, ledge: true };
         }
         self.level_between(xi, from, end)
@@ -223,7 +256,7 @@ impl<'a> Skewed<'a> {
     fn level_between(&mut self, xi: f64, from: f64, far: f64) -> Edge {
         let eta = self.level(xi, from, far).unwrap_or(from);
         let step = STEP_ROUNDINGS * f64::EPSILON * self.placement.wheel().profile().extent();
-        Edge { eta, ledge: (self.evaluator.separation(xi, eta) - self.approach).abs() > step }
+        Edge { eta, ledge: self.raised.gap(xi, eta).abs() > step }
     }
 
     /// Returns η with s(ξ, η) = δ between `from` and `far`, where s − δ must have different signs.
@@ -232,12 +265,11 @@ impl<'a> Skewed<'a> {
     /// rounding within four. The result is accepted if s − δ changes its sign within a few roundings of it. Otherwise a
     /// joint has misled the steps, and a bracketed root replaces the result.
     fn level(&mut self, xi: f64, from: f64, far: f64) -> Option<f64> {
-        let approach = self.approach;
         let mut eta = from + (far - from) / 2.0;
         let mut settled = false;
         for _ in 0..NEWTON_STEPS {
-            let (s, [_, slope]) = self.evaluator.separation_and_gradient(xi, eta);
-            let step = (s - approach) / slope;
+            let Some([depth, slope]) = self.raised.gap_and_slope(xi, eta) else { break };
+            let step = depth / slope;
             eta -= step;
             settled = step.abs() <= QUADRATIC * (eta - from).abs();
             if settled {
@@ -247,7 +279,7 @@ impl<'a> Skewed<'a> {
         let near = NEWTON_ROUNDINGS * f64::EPSILON * eta.abs().max((eta - from).abs());
         let near = near.copysign(far - from);
         settled &= (eta - from) * (far - eta) >= 0.0;
-        let mut depth = |eta: f64| self.evaluator.separation(xi, eta) - approach;
+        let mut depth = |eta: f64| self.raised.gap(xi, eta);
         let confirmed = settled && depth(eta - near) <= 0.0 && depth(eta + near) >= 0.0;
         if confirmed { Some(eta) } else { bracketed(depth, from, far) }
     }
@@ -256,13 +288,13 @@ impl<'a> Skewed<'a> {
     fn surface_end(&mut self, xi: f64, mut on: f64, mut off: f64) -> f64 {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(off - on);
         let between = |rim: &f64| (rim - on) * (off - rim) > 0.0;
-        let rims = self.valleys.rims(xi).filter(between);
+        let rims = self.rims(xi).filter(between);
         let nearest = rims.min_by(|a, b| (a - on).abs().total_cmp(&(b - on).abs()));
         for place in nearest.into_iter().flat_map(|rim| [rim - beside, rim + beside]) {
             if (place - on) * (off - place) > 0.0 {
-                if self.evaluator.separation(xi, place).is_nan() { off = place } else { on = place }
+                if self.raised.gap(xi, place).is_nan() { off = place } else { on = place }
             }
         }
-        last_where(|eta| !self.evaluator.separation(xi, eta).is_nan(), on, off)
+        last_where(|eta| !self.raised.gap(xi, eta).is_nan(), on, off)
     }
 }

@@ -23,7 +23,6 @@ use super::path::{Leg, ValleyPath, circle_legs};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::placement::Placement;
-use crate::separation::Evaluator;
 
 /// Largest error of ξ, as a share of ξ, with which a root is accepted.
 const ROOT_SHARE: f64 = 4.0 * f64::EPSILON;
@@ -82,11 +81,19 @@ impl<'a> Valleys<'a> {
         Self { turned, creases, rims }
     }
 
+    /// Returns whether the wheel is skewed. Otherwise its valleys are the lower sides of its profile, at η = 0.
+    pub(crate) fn is_turned(&self) -> bool {
+        self.turned.skew.im != 0.0
+    }
+
     /// Returns the place of a valley or ridge at ξ, which must lie inside its interval.
     pub(crate) fn spot(&self, crease: usize, xi: f64) -> ValleySpot {
         let legs = &self.creases[crease].legs;
         let leg = &legs[legs.partition_point(|leg| leg.xi[1] < xi).min(legs.len() - 1)];
         let (circle, t) = match leg.piece {
+            Some(piece) if !self.is_turned() => {
+                (self.turned.circle(piece, self.abscissa(piece, leg.range, xi)), 0.0)
+            }
             Some(piece) => self.turned.parallel(piece, self.abscissa(piece, leg.range, xi)),
             None => (leg.circle, self.turn(leg, xi)),
         };
@@ -143,17 +150,18 @@ impl<'a> Valleys<'a> {
         if ends.iter().all(|end| end.x > 0.0) { ends.map(slope).into() } else { Interval::ALL }
     }
 
-    /// Returns s(ξ, η) of a placed pair at the place of a valley or ridge \[mm\].
-    pub(crate) fn separation(&self, evaluator: &mut Evaluator<'_>, xi: f64, spot: &ValleySpot) -> f64 {
-        let own = spot.height - evaluator.rail_height(xi);
-        let s = if spot.on_circle { f64::NAN } else { evaluator.separation(xi, spot.eta) };
+    /// Returns how far the wheel at the place of a valley or ridge lies above a height \[mm\]. `over` gives the same from the surface at
+    /// the place, moved along ξ by its argument \[mm\].
+    pub(crate) fn separation(&self, spot: &ValleySpot, height: f64, mut over: impl FnMut(f64) -> f64) -> f64 {
+        let own = spot.height - height;
+        let s = if spot.on_circle { f64::NAN } else { over(0.0) };
         if s.is_nan() || s <= own + self.turned.rounding() {
             // Rounding may end the surface a little before this place.
             return if s.is_nan() { own } else { s };
         }
         // Rounding may find the upper side of a step. Then the lower side is next to it.
         let beside = BESIDE * self.turned.axle;
-        let sides = [xi - beside, xi + beside].map(|xi| evaluator.separation(xi, spot.eta));
+        let sides = [-beside, beside].map(over);
         if sides.iter().any(|side| *side < own + (s - own) / 2.0) { own } else { s }
     }
 
@@ -165,12 +173,19 @@ impl<'a> Valleys<'a> {
             let miss = self.turned.place(&circle, t).xi - xi;
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
-        // The place is C itself. A bracket with an end at 0 would be halved a thousand times.
         let range = Interval::between(from, to);
+        if !self.is_turned() {
+            return range.nearest(xi);
+        }
+        // The place is C itself. A bracket with an end at 0 would be halved a thousand times.
         if xi == 0.0 && range.contains(0.0) && miss(0.0) == 0.0 {
             return 0.0;
         }
-        let (mut a, mut b) = ((from, miss(from)), (to, miss(to)));
+        // Where the skew is small, the place is nearly over the profile point itself.
+        let near = range.nearest(xi);
+        let mut a = (near, miss(near));
+        let next = range.nearest(near - a.1);
+        let mut b = if a.1 == 0.0 { a } else { (next, miss(next)) };
         for _ in 0..SECANTS {
             let next = b.0 - b.1 * ((b.0 - a.0) / (b.1 - a.1));
             if b.1 == 0.0 || !range.contains(next) {

@@ -1,0 +1,263 @@
+//! The curve of a rail's profile, each of its points raised by what the wheel may sink in there: over the tangent plane by δ along ζ, over
+//! the rail's own surface by δ cos α along its normal. A line of constant ξ or σ is straight and runs along η through the raised point,
+//! and the patch is where that line lies in the wheel.
+
+use std::cell::{Cell, OnceCell};
+
+use crate::conformal::{RailArcLength, RailPoint};
+use crate::numerics::interval::Interval;
+use crate::numerics::lanes::{Lanes, MANY, lanes};
+use crate::numerics::roots::bracketed;
+use crate::numerics::sign_changes::sign_changes;
+use crate::placement::Placement;
+use crate::profile::{Branch, BranchShape, Section};
+use crate::separation::{Relief, ReliefPoint};
+
+/// Rounding of the direction of the raised curve.
+const DIRECTION_NOISE: f64 = 1e-13;
+
+/// The raised profile of an extruded rail under a wheel of revolution.
+#[derive(Debug)]
+pub(super) struct Raised<'a> {
+    relief: Relief<'a>,
+    /// Approach δ \[mm\].
+    approach: f64,
+    /// The rail's surface by its arc length σ; `None` over the tangent plane, where ξ stands for σ.
+    pub(super) surface: Option<RailArcLength<'a>>,
+    /// The last point that was asked for.
+    last: Cell<RaisedPoint>,
+    /// The pieces over the rail's surface, once they are asked for.
+    pieces: OnceCell<Vec<RaisedPiece>>,
+}
+
+/// A point of the rail's profile and how far it is raised.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RaisedPoint {
+    sigma: f64,
+    /// ξ of the profile's point \[mm\].
+    pub(super) foot: f64,
+    /// How far the raised point lies from there along ξ and ζ \[mm\].
+    pub(super) moved: [f64; 2],
+}
+
+impl RaisedPoint {
+    /// Returns ξ of the raised point \[mm\].
+    pub(super) fn xi(&self) -> f64 {
+        self.foot + self.moved[0]
+    }
+}
+
+/// N raised points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RaisedLanes<const N: usize> {
+    /// ξ of the profile's points \[mm\].
+    pub(super) foot: Lanes<N>,
+    /// ξ of the raised points \[mm\].
+    pub(super) xi: Lanes<N>,
+    /// How far the raised points lie above the profile's along ζ \[mm\].
+    pub(super) lift: Lanes<N>,
+}
+
+impl<const N: usize> RaisedLanes<N> {
+    /// Returns N points of the tangent plane, raised by an approach \[mm\].
+    pub(super) fn over_plane(xi: &Lanes<N>, approach: f64) -> Self {
+        Self { foot: *xi, xi: *xi, lift: [approach; N] }
+    }
+
+    /// Returns one of the points.
+    pub(super) fn lane(&self, k: usize) -> RaisedLanes<1> {
+        RaisedLanes { foot: [self.foot[k]], xi: [self.xi[k]], lift: [self.lift[k]] }
+    }
+}
+
+/// The raised curve over one piece of the rail.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RaisedPiece {
+    /// Range of σ \[mm\].
+    pub(super) sigma: Interval,
+    /// Bounds of ξ and ζ \[mm\].
+    pub(super) bounds: [Interval; 2],
+    /// Bounds of dξ/dσ and dζ/dσ.
+    pub(super) direction: [Interval; 2],
+}
+
+impl<'a> Raised<'a> {
+    /// Makes the raised profile of a placed pair for approach δ \[mm\], over the tangent plane or over the rail's `surface`.
+    pub(super) fn new(placement: &'a Placement, approach: f64, surface: Option<RailArcLength<'a>>) -> Self {
+        let last = Cell::new(RaisedPoint { sigma: f64::NAN, foot: f64::NAN, moved: [f64::NAN; 2] });
+        Self { relief: Relief::new(placement), approach, surface, last, pieces: OnceCell::new() }
+    }
+
+    /// Returns the rail's section.
+    pub(super) fn rail(&self) -> &'a Section {
+        self.relief.below
+    }
+
+    /// Returns the raised point at σ \[mm\]; NaN beyond the rail.
+    #[inline]
+    pub(super) fn at(&self, sigma: f64) -> RaisedPoint {
+        let Some(surface) = &self.surface else {
+            return RaisedPoint { sigma, foot: sigma, moved: [0.0, self.approach] };
+        };
+        if self.last.get().sigma != sigma {
+            let nowhere = RaisedPoint { sigma, foot: f64::NAN, moved: [f64::NAN; 2] };
+            self.last.set(surface.point(sigma).map_or(nowhere, |at| {
+                let lift = self.approach * at.cos;
+                RaisedPoint { sigma, foot: at.xi, moved: [-lift * at.sin, lift * at.cos] }
+            }));
+        }
+        self.last.get()
+    }
+
+    /// Returns ξ of the raised point \[mm\]; NaN beyond the rail.
+    pub(super) fn xi(&self, sigma: f64) -> f64 {
+        self.at(sigma).xi()
+    }
+
+    /// Returns the raised points at 16 σ \[mm\].
+    pub(super) fn lanes(&self, sigma: &Lanes) -> RaisedLanes<MANY> {
+        if self.surface.is_none() {
+            return RaisedLanes::over_plane(sigma, self.approach);
+        }
+        let points = sigma.map(|sigma| self.at(sigma));
+        RaisedLanes {
+            foot: lanes(|k| points[k].foot),
+            xi: lanes(|k| points[k].xi()),
+            lift: lanes(|k| points[k].moved[1]),
+        }
+    }
+
+    /// Returns \[dξ, dζ\] along the raised curve, per σ; NaN beyond the rail.
+    pub(super) fn direction(&self, sigma: f64) -> [f64; 2] {
+        let Some(surface) = &self.surface else {
+            let slope =
+                self.rail().branch_at(sigma).map_or(f64::NAN, |branch| branch.chord_slope(sigma, sigma));
+            return [1.0, slope];
+        };
+        surface.point(sigma).map_or([f64::NAN; 2], |RailPoint { cos, sin, curvature, .. }| {
+            let turned = self.approach * curvature;
+            [cos - turned * (cos - sin) * (cos + sin), sin - 2.0 * turned * sin * cos]
+        })
+    }
+
+    fn point(&mut self, sigma: f64, eta: f64) -> Option<(RaisedPoint, ReliefPoint)> {
+        let at = self.at(sigma);
+        Some((at, self.relief.point(at.xi(), eta)?))
+    }
+
+    /// Computes how far the wheel's surface lies above the profile's own point at σ, at the place of the raised point \[mm\]; NaN where a
+    /// body has no surface.
+    pub(super) fn over_profile(&mut self, sigma: f64, eta: f64) -> f64 {
+        self.point(sigma, eta).map_or(f64::NAN, |(at, point)| self.height(&at, &point))
+    }
+
+    fn height(&self, at: &RaisedPoint, point: &ReliefPoint) -> f64 {
+        self.relief.height_over(at.foot, at.moved[0], point)
+    }
+
+    /// Computes how far the wheel's surface lies above the raised point \[mm\]: negative in the patch, over the tangent plane s − δ. NaN
+    /// where a body has no surface.
+    pub(super) fn gap(&mut self, sigma: f64, eta: f64) -> f64 {
+        self.over_profile(sigma, eta) - self.at(sigma).moved[1]
+    }
+
+    /// Computes the gap \[mm\] and its slope along η; `None` off the wheel.
+    pub(super) fn gap_and_slope(&mut self, sigma: f64, eta: f64) -> Option<[f64; 2]> {
+        let (at, point) = self.point(sigma, eta)?;
+        Some([self.height(&at, &point) - at.moved[1], self.relief.slopes(&point)[1]])
+    }
+
+    /// Computes the slope of the gap along σ; NaN where a body has no surface.
+    pub(super) fn slope_along(&mut self, sigma: f64, eta: f64) -> f64 {
+        let [run, rise] = self.direction(sigma);
+        self.point(sigma, eta).map_or(f64::NAN, |(_, point)| self.relief.slopes(&point)[0] * run - rise)
+    }
+
+    /// Returns the abscissa \[mm\] of the profile's point from which the wheel's surface is swept there; NaN off the wheel.
+    pub(super) fn abscissa(&mut self, sigma: f64, eta: f64) -> f64 {
+        self.point(sigma, eta).map_or(f64::NAN, |(_, point)| self.relief.abscissa(&point))
+    }
+
+    /// Returns the range of σ \[mm\] of the rail.
+    pub(super) fn reach(&self) -> Option<Interval> {
+        self.surface.as_ref().map_or_else(|| self.rail().reach(), RailArcLength::reach)
+    }
+
+    /// Returns the pieces of the raised curve over the rail's surface inside a range of σ \[mm\]; none over the tangent plane.
+    pub(super) fn pieces(&self, over: Interval) -> impl Iterator<Item = RaisedPiece> {
+        let stretches = || self.surface.iter().flat_map(RailArcLength::pieces);
+        let all =
+            self.pieces.get_or_init(|| stretches().map(|(sigma, piece)| self.piece(sigma, piece)).collect());
+        let inside = all.iter().map(move |piece| RaisedPiece { sigma: piece.sigma.cut(over), ..*piece });
+        inside.filter(|piece| piece.sigma.has_width())
+    }
+
+    fn piece(&self, sigma: Interval, index: usize) -> RaisedPiece {
+        let (rail, approach) = (self.rail(), self.approach);
+        let piece = &rail.pieces[index];
+        let branch = &rail.branches[piece.branch];
+        let (slopes, [_, seconds]) = (rail.slopes(index), branch.derivative_bounds(piece.xi));
+        // Between its ends a curve leaves its chord by no more than ζ″ l²/8.
+        let bulge = seconds.magnitude() * piece.xi.width().powi(2) / 8.0;
+        let heights = Interval::between(piece.heights[0], piece.heights[1]).grown(bulge);
+        let bounds = [piece.xi.grown(approach.abs() / 2.0), heights.hull(heights + approach)];
+        // Of the lines along which t + δ (1 − cos α) is constant, and lies between −δ and δ.
+        let turned = 2.0 * approach.abs() * most_curved(branch, seconds);
+        let flattest = slopes.nearest(0.0);
+        let cosines = Interval::between(cosine(slopes.magnitude()), cosine(flattest));
+        let sines =
+            slopes.map(|slope| if slope.is_infinite() { slope.signum() } else { slope * cosine(slope) });
+        RaisedPiece { sigma, bounds, direction: [cosines.grown(turned), sines.grown(turned)] }
+    }
+
+    /// Returns the parts of a piece over which ξ of the raised curve only grows or only falls.
+    pub(super) fn runs(&self, piece: &RaisedPiece) -> Vec<Interval> {
+        if piece.direction[0].low > 0.0 {
+            return vec![piece.sigma];
+        }
+        let mut turns = Vec::new();
+        let run = |sigma: &Lanes| sigma.map(|sigma| self.direction(sigma)[0]);
+        sign_changes(run, piece.sigma, DIRECTION_NOISE, &mut turns);
+        turns.retain(|turn| piece.sigma.surrounds(*turn));
+        let ends: Vec<f64> = [piece.sigma.low].into_iter().chain(turns).chain([piece.sigma.high]).collect();
+        ends.windows(2).map(|pair| Interval::new(pair[0], pair[1])).collect()
+    }
+
+    /// Returns the part of a run whose ξ lie in an interval \[mm\]; `None` if there is none.
+    pub(super) fn over(&self, run: Interval, xi: Interval) -> Option<Interval> {
+        let [a, b] = run.ends().map(|sigma| self.xi(sigma));
+        if !Interval::between(a, b).meets(xi) {
+            return None;
+        }
+        let at = |bound: f64| bracketed(|sigma| self.xi(sigma) - bound, run.low, run.high);
+        let [low, high] = xi.ends().map(at);
+        let (first, last) = if a <= b { (low, high) } else { (high, low) };
+        let inside = |end: f64| xi.contains(end);
+        let low = if inside(a) { Some(run.low) } else { first };
+        let high = if inside(b) { Some(run.high) } else { last };
+        Some(Interval::new(low?, high?)).filter(|over| over.has_width())
+    }
+
+    /// Returns the σ inside a range at which the raised curve stands at ξ \[mm\].
+    pub(super) fn sigmas(&self, xi: f64, over: Interval) -> Vec<f64> {
+        if self.surface.is_none() {
+            return vec![xi];
+        }
+        let pieces = self.pieces(over).filter(|piece| piece.bounds[0].contains(xi));
+        let runs = pieces.flat_map(|piece| self.runs(&piece));
+        runs.filter_map(|run| bracketed(|sigma| self.xi(sigma) - xi, run.low, run.high)).collect()
+    }
+}
+
+/// Returns the cosine of the angle of a slope.
+fn cosine(slope: f64) -> f64 {
+    1f64.hypot(slope).recip()
+}
+
+/// Returns a bound of the curvature of a branch \[1/mm\] from bounds of ζ″, beyond which it nowhere goes.
+fn most_curved(branch: &Branch, seconds: Interval) -> f64 {
+    match &branch.shape {
+        BranchShape::Arc(arc) => arc.curvature.abs(),
+        BranchShape::Polynomial(_) => seconds.magnitude(),
+    }
+}
