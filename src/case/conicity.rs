@@ -316,7 +316,7 @@ fn key_figures(
     let figures = KeyFigures::new(system, table, roll)?;
     let mut known = |what: &str, found: std::result::Result<f64, NoConicity>| {
         found.unwrap_or_else(|why| {
-            findings.push(format!("no {what}: {}", reason(why)));
+            findings.push(format!("no {what}: {why}"));
             f64::NAN
         })
     };
@@ -359,16 +359,6 @@ fn key_figures(
 
 /// Clearances of railways \[mm\]: from wheels that just fit to worn flanges in a curve with widened gauge.
 const USUAL_CLEARANCE: std::ops::RangeInclusive<f64> = 0.0..=40.0;
-
-/// Says why there is no conicity.
-fn reason(why: NoConicity) -> &'static str {
-    match why {
-        NoConicity::OffTrack => "a wheel leaves its rail within the amplitude",
-        NoConicity::NotRestoring => "the movement does not come back through the centre",
-        NoConicity::NoAmplitude => "the amplitude is 0",
-        NoConicity::GivenRoll | NoConicity::NotAsked => "the wheelset is held",
-    }
-}
 
 /// Says up to where both wheels touch, if that is less than what is asked for.
 fn reach(lateral: &[f64], found: &[Option<GeometryAt>]) -> Option<String> {

@@ -168,7 +168,7 @@ impl FoundContact {
         let at = |amplitude: f64| conicity.at(amplitude);
         let [usual, low, high] = [AMPLITUDE, SLOPE[0], SLOPE[1]].map(at);
         for (found, amplitude) in [(usual, AMPLITUDE), (low, SLOPE[0]), (high, SLOPE[1])] {
-            findings.extend(found.err().map(|why| format!("no conicity at {amplitude} mm: {}", reason(why))));
+            findings.extend(found.err().map(|why| format!("no conicity at {amplitude} mm: {why}")));
         }
         let value = |found: std::result::Result<crate::search::Equivalent, NoConicity>| {
             found.ok().map(|found| found.conicity)
@@ -198,17 +198,6 @@ pub(super) fn wheelset(case: &Case) -> Result<(&WheelsetOnTrack, Position)> {
 fn own_warnings(fleet: &Listed, case: &Case) -> Vec<String> {
     let shared = fleet.warnings();
     case.warnings().into_iter().filter(|warning| !shared.contains(warning)).collect()
-}
-
-/// Says why there is no conicity.
-fn reason(why: NoConicity) -> &'static str {
-    match why {
-        NoConicity::NotAsked => "not asked for",
-        NoConicity::GivenRoll => "the roll is given",
-        NoConicity::NoAmplitude => "no amplitude",
-        NoConicity::OffTrack => "the wheelset leaves the track before",
-        NoConicity::NotRestoring => "the movement does not come back",
-    }
 }
 
 /// Where the wheels of a pair touch.

@@ -3,8 +3,8 @@
 use nalgebra::Point2;
 use serde::Serialize;
 
-use crate::patch::skewed::monotone::monotone;
-use crate::patch::skewed::valleys::Valleys;
+use crate::patch::in_valleys::monotone::monotone;
+use crate::patch::in_valleys::valleys::Valleys;
 use crate::patch::{Patch, Window, least_on_roller, turning_points};
 use crate::placement::Placement;
 use crate::separation::{Evaluator, midplane_gap};

@@ -2,6 +2,7 @@
 
 use super::edges::EdgeFinder;
 use super::grading::Grading;
+use super::in_valleys::slicer::STEP_ROUNDINGS;
 use super::outline::{End, Outline};
 use super::slice::Slice;
 use super::stretch::{Stretch, StretchFit};
@@ -11,9 +12,6 @@ use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::numerics::quadrature::smooth_integrals;
 use crate::profile::Section;
-
-/// Least step of a surface, in roundings of the profile's extent. A smaller one counts as a smooth joint.
-const STEP_ROUNDINGS: f64 = 64.0;
 
 /// Distance of two corners, as a share of the band's length, up to which they count as one.
 pub(super) const ONE_CORNER: f64 = 1e-11;
@@ -42,7 +40,7 @@ pub(crate) struct Band {
     /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip, unless s is level along that end.
     pub(crate) sides: [Interval; 2],
     /// Pairs (ξ, valleys) by ascending ξ: the valleys that lie in the band up to that ξ, the deepest first, from which slices are
-    /// found. Where a body varies it is the band's lane; empty without skew, on a roller and over the rail's surface.
+    /// found. Where a body varies it is the band's lane; empty on a roller, and without skew over the tangent plane.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
     /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,

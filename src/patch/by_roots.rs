@@ -5,8 +5,8 @@
 //! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where a hollow of its profile has
 //! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles.
 
+use super::in_valleys::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
 use super::level::Level;
-use super::skewed::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::{Body, Placement};
@@ -111,7 +111,7 @@ impl<'a> ByRoots<'a> {
     /// not known.
     ///
     /// Method: with skew, a parabola with the gap and slope at η = 0 falls below that gap by slope²/4a, with a the opening; slope²/a is
-    /// allowed for. Between the ends of the interval it falls by no more than the profiles' slopes there allow.
+    /// allowed for. From either end of the interval the gap falls by no more than bounds of the profiles' slopes allow.
     pub(super) fn is_apart(&mut self, over: Interval) -> bool {
         if self.level.normal_gap().is_some() {
             return false;
@@ -122,9 +122,11 @@ impl<'a> ByRoots<'a> {
             let met = Interval::between(a.abscissae[body], b.abscissae[body]).grown(over.width());
             self.sections[body].map_or(Interval::of(0.0), |section| section.slopes_over(met))
         });
-        let fall = (slopes[0] + slopes[1]).magnitude() * over.width();
-        let least = |at: &GapSlopes| at.gap - allowed * at.slopes[1] * at.slopes[1];
-        least(&a) - fall > self.approach && least(&b) - fall > self.approach
+        let (slope, length) = (slopes[0] + slopes[1], over.width());
+        let fall = |at: &GapSlopes| allowed * at.slopes[1] * at.slopes[1];
+        let from_a = a.gap + slope.low.min(0.0) * length;
+        let from_b = b.gap - slope.high.max(0.0) * length;
+        from_a.max(from_b) - fall(&a).max(fall(&b)) > self.approach
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.

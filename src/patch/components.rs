@@ -2,12 +2,12 @@
 
 use super::band::{Band, Turn};
 use super::corners;
+use super::in_valleys::lanes;
 use super::loops;
 use super::loops::Rows;
 use super::measure::area_and_length;
 use super::outline::{End, Outline};
 use super::plain;
-use super::skewed::lanes;
 use super::slice::Slice;
 use super::varying;
 use super::window::Window;
@@ -96,9 +96,9 @@ impl Patch {
     /// Finds all components inside the window. A line of constant ξ meets a component in one interval of η. Under a skewed wheel on a
     /// rail, and where a body varies, it may meet it in several, and a component may have holes.
     ///
-    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew on a rail a part
-    /// is missed only between two turns of s along a valley between which the surfaces are parallel to 1e-13; on a roller, only
-    /// between two turns within 1/512 of the range of ξ (see the docs on numerics).
+    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew a part is missed
+    /// only between two turns of s along a valley between which the surfaces are parallel to 1e-13, on a roller to 1e-11 (see the docs on
+    /// numerics).
     /// Where a body varies a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
     /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
     /// the boundary is interpolated to 1e-9 of its width.
@@ -109,10 +109,9 @@ impl Patch {
     /// Finds all components of the conformal patch {t < δ cos α} over the rail's surface, inside a window of σ and η: wherever this type
     /// says ξ it is σ, and s is t + δ (1 − cos α). Area \[mm²\] and perimeter \[mm\] are those on the rail's surface.
     ///
-    /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part may be missed
-    /// between two turns of the least gap along σ that lie within 1/512 of the searched σ, which is the window's range or the
-    /// rail's surface where that is shorter; under skew so may a second interval of η at one σ. Approaches of the size of the bodies
-    /// take seconds. Where a body varies a part is missed as in [`Self::new`].
+    /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
+    /// in [`Self::new`] with skew. On a rail the patch is where the point of the rail, raised by δ cos α along its normal, lies in the
+    /// wheel: a wheel thinner than that, which the normal enters and leaves again below the raised point, is overlooked.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }
@@ -179,7 +178,7 @@ fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
     let placement = outline.slicer.placement();
     let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
         varying::bands(varying, placement, &outline.window)
-    } else if outline.slicer.skewed.is_some() {
+    } else if outline.slicer.in_valleys.is_some() {
         lanes::bands(outline)
     } else {
         plain::bands(outline)
@@ -227,7 +226,7 @@ impl BandGroup {
 
     fn component(mut self, outline: &mut Outline<'_>) -> Component {
         // Without valleys the slices do not say more about the least s.
-        let known = (outline.slicer.skewed.is_none() && outline.slicer.varying.is_none())
+        let known = (outline.slicer.in_valleys.is_none() && outline.slicer.varying.is_none())
             .then(|| self.deepest(outline, &[]));
         let rows = self.rows(outline, known.map(|known| known[0]));
         let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
@@ -280,7 +279,7 @@ impl BandGroup {
                 corners::plain(outline, band, least, &mut more);
             } else if !varying {
                 let eta = reach(outline, band);
-                corners::skewed(outline, band, eta, &mut more);
+                corners::on_circles(outline, band, eta, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);

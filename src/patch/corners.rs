@@ -53,10 +53,10 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
 
 /// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel. `eta` is the
 /// range of η of the band.
-pub(super) fn skewed(outline: &Outline<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
-    let Some(skewed) = &outline.slicer.skewed else { return };
+pub(super) fn on_circles(outline: &Outline<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
+    let Some(in_valleys) = &outline.slicer.in_valleys else { return };
     let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail().section);
-    skewed.valleys.circles(band.xi, eta, |place, [from, to]| {
+    in_valleys.valleys.circles(band.xi, eta, |place, [from, to]| {
         let depth = |t: f64| {
             let [xi, height] = place(t);
             height - rail.height(xi) - approach

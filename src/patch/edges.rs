@@ -1,8 +1,9 @@
 //! Finds both edges of 16 slices at once, where each edge lies over one piece of the wheel.
 //!
-//! At an edge the wheel stands at ζ = ζ^R(ξ) + δ, or over the rail's surface at the raised point, of which ξ and ζ take their places. This gives the axle distance w of the edge, and with y = η′ in the wheel's own
-//! directions its sagitta e = y²/(w + ϱ), ϱ = √(w² + y²). The foot ξ′ − e sinθ of the edge lies on the profile at the height ζ − e cosθ.
-//! With m the slope of the chord from a profile point ξ_0 near the midplane to the foot, and g_0 = h(ξ_0) − ζ,
+//! At an edge the wheel stands at ζ = ζ^R(ξ) + δ; over the rail's surface ξ and ζ are those of the raised point. This gives the axle
+//! distance w of the edge, and with y = η′ in the wheel's own directions its sagitta e = y²/(w + ϱ), ϱ = √(w² + y²). The foot ξ′ − e sinθ
+//! of the edge lies on the profile at the height ζ − e cosθ. With m the slope of the chord from a profile point ξ_0 near the midplane to
+//! the foot, and g_0 = h(ξ_0) − ζ,
 //!
 //! ```text
 //! (cosθ − m sinθ)/(w + ϱ) y² + m tanχ y + g_0 + m (ξ/cosχ − ξ_0) = 0,   η = (y + ξ sinχ)/cosχ.

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::skewed::circle::{BESIDE, Turned};
-use super::skewed::slicer::Edge;
+use super::in_valleys::circle::{BESIDE, Turned};
+use super::in_valleys::slicer::Edge;
 use super::slice::Slicer;
 use super::window::Window;
 use crate::conformal::Reference;
@@ -58,8 +58,8 @@ impl<'a> Outline<'a> {
         let beside = BESIDE * placement.rolling_radius();
         let ends = wheel.pieces.iter().enumerate().flat_map(|(k, piece)| piece.xi.ends().map(|p| (k, p)));
         let crossed = ends.map(|(k, p)| turned.xi_at(k, p, eta)).flat_map(|xi| [xi - beside, xi + beside]);
-        let crossed = crossed.flat_map(|xi| match &self.slicer.skewed {
-            Some(skewed) => skewed.raised.sigmas(xi, over),
+        let crossed = crossed.flat_map(|xi| match &self.slicer.in_valleys {
+            Some(in_valleys) => in_valleys.raised.sigmas(xi, over),
             None => vec![xi],
         });
         let joints = self.slicer.joints(over).into_iter().flat_map(|xi| [xi, xi.next_up()]);
@@ -98,14 +98,15 @@ impl<'a> Outline<'a> {
     /// between the valley and that edge.
     pub(super) fn depth(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let floor = self.floor(valley, xi);
-        match (&mut self.slicer.skewed, valley) {
-            (Some(skewed), Some(valley)) => {
-                let spot = skewed.spot(valley, xi);
+        match (&mut self.slicer.in_valleys, valley) {
+            (Some(in_valleys), Some(valley)) => {
+                let spot = in_valleys.spot(valley, xi);
                 if spot.eta == floor || floor.is_nan() {
-                    return skewed.depth_at(xi, &spot);
+                    return in_valleys.depth_at(xi, &spot);
                 }
-                let reached =
-                    skewed.edges(xi, valley).is_some_and(|[low, high]| low.eta <= floor && floor <= high.eta);
+                let reached = in_valleys
+                    .edges(xi, valley)
+                    .is_some_and(|[low, high]| low.eta <= floor && floor <= high.eta);
                 if !reached {
                     return f64::INFINITY;
                 }

@@ -1,9 +1,9 @@
-//! Finds the bands of a patch that a line of constant ξ meets in at most one interval: without skew, on a roller, and over the rail's
-//! own surface.
+//! Finds the bands of a patch that a line of constant ξ meets in at most one interval: on a roller, and without skew over the tangent
+//! plane of a rail.
 
 use super::band::{Band, Turn, steps};
+use super::in_valleys::slicer::between;
 use super::outline::{End, Outline, SLOPE_NOISE};
-use super::skewed::slicer::between;
 use super::window::Window;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;

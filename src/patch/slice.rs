@@ -4,9 +4,9 @@
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
 use super::by_roots::ByRoots;
+use super::in_valleys::slicer::{Edge, InValleys, STEP_ROUNDINGS, between, on_surface};
 use super::level::Level;
 use super::raised::RaisedLanes;
-use super::skewed::slicer::{Edge, STEP_ROUNDINGS, Skewed, between, on_surface};
 use super::varying::Varying;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
@@ -50,7 +50,7 @@ pub struct Slicer<'a> {
     /// The slices of swept bodies on a roller; `None` on a rail.
     pub(super) by_roots: Option<ByRoots<'a>>,
     /// The slices of swept bodies on a rail, under a skewed wheel or over the rail's surface; otherwise `None`.
-    pub(super) skewed: Option<Skewed<'a>>,
+    pub(super) in_valleys: Option<InValleys<'a>>,
     /// The normal gap of these slices over the rail's surface; otherwise `None`.
     normal: Option<Level<'a>>,
     /// The slices where a body varies; `None` where both are swept.
@@ -71,14 +71,14 @@ impl<'a> Slicer<'a> {
         let on_rail = !varies && !on_roller;
         let normal = (on_rail && reference == Reference::Rail).then(level);
         let surface = normal.as_ref().and_then(Level::normal_gap).map(|gap| gap.rail().clone());
-        let skewed = on_rail && (surface.is_some() || placement.skew() != 0.0);
+        let in_valleys = on_rail && (surface.is_some() || placement.skew() != 0.0);
         Self {
             placement,
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
             by_roots: (on_roller && !varies).then(|| ByRoots::new(placement, approach, level())),
-            skewed: skewed.then(|| Skewed::new(placement, approach, surface)),
+            in_valleys: in_valleys.then(|| InValleys::new(placement, approach, surface)),
             varying: varies.then(|| Varying::new(placement, approach, level())),
             normal,
             approach,
@@ -139,16 +139,18 @@ impl<'a> Slicer<'a> {
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.depth(xi);
         }
-        match &mut self.skewed {
-            Some(skewed) => skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.depth(valley, xi)),
+        match &mut self.in_valleys {
+            Some(in_valleys) => {
+                in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.depth(valley, xi))
+            }
             None => midplane_gap(self.placement, xi) - self.approach,
         }
     }
 
     /// Returns s − δ at a valley \[mm\]; without skew that of the midplane.
     pub(super) fn depth_over(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        match (&mut self.skewed, valley) {
-            (Some(skewed), Some(valley)) => skewed.depth(valley, xi),
+        match (&mut self.in_valleys, valley) {
+            (Some(in_valleys), Some(valley)) => in_valleys.depth(valley, xi),
             _ => self.depth(xi),
         }
     }
@@ -156,16 +158,16 @@ impl<'a> Slicer<'a> {
     /// Returns how far the wheel lies above what bounds the patch at a point \[mm\]: s − δ, or over the rail's surface its height over
     /// the raised point.
     pub(super) fn miss(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.skewed {
-            Some(skewed) => skewed.raised.gap(xi, eta),
+        match &mut self.in_valleys {
+            Some(in_valleys) => in_valleys.raised.gap(xi, eta),
             None => self.separation(xi, eta) - self.approach,
         }
     }
 
     /// Returns the slope of [`Self::miss`] along ξ.
     pub(super) fn slope_along(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.skewed {
-            Some(skewed) => skewed.raised.slope_along(xi, eta),
+        match &mut self.in_valleys {
+            Some(in_valleys) => in_valleys.raised.slope_along(xi, eta),
             None => self.gradient(xi, eta)[0],
         }
     }
@@ -175,8 +177,8 @@ impl<'a> Slicer<'a> {
     ///
     /// Accuracy: |Δη| ≤ (R/η) × the accuracy of s.
     pub fn slice(&mut self, xi: f64) -> Option<Slice> {
-        let valley = match &mut self.skewed {
-            Some(skewed) => Some(skewed.lowest_valley(xi)?),
+        let valley = match &mut self.in_valleys {
+            Some(in_valleys) => Some(in_valleys.lowest_valley(xi)?),
             None => None,
         };
         self.edges(xi, valley).map(|edges| Slice { eta: between(edges) })
@@ -187,8 +189,8 @@ impl<'a> Slicer<'a> {
         if let Some(varying) = &mut self.varying {
             return varying.edges(xi, valley);
         }
-        if let (Some(skewed), Some(valley)) = (&mut self.skewed, valley) {
-            return skewed.edges(xi, valley);
+        if let (Some(in_valleys), Some(valley)) = (&mut self.in_valleys, valley) {
+            return in_valleys.edges(xi, valley);
         }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.edges(xi);
@@ -202,7 +204,7 @@ impl<'a> Slicer<'a> {
     pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
         match &mut self.by_roots {
             Some(by_roots) => by_roots.edges_near(xi, guess),
-            None => self.skewed.as_mut()?.edges_near((xi, valley?), guess),
+            None => self.in_valleys.as_mut()?.edges_near((xi, valley?), guess),
         }
     }
 
@@ -210,15 +212,15 @@ impl<'a> Slicer<'a> {
     pub(super) fn edge_near(&mut self, xi: f64, guess: [f64; 2], side: usize) -> Option<f64> {
         match &mut self.by_roots {
             Some(by_roots) => by_roots.edge_near(xi, guess, side).map(|(eta, _)| eta),
-            None => self.skewed.as_mut()?.edge_near(xi, guess, side),
+            None => self.in_valleys.as_mut()?.edge_near(xi, guess, side),
         }
     }
 
     /// Returns the abscissae \[mm\] of the points of the wheel's and of a roller's profile from which the surfaces at a place are swept;
     /// NaN where there is none.
     pub(super) fn abscissae(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        match &mut self.skewed {
-            Some(skewed) => [skewed.raised.abscissa(xi, eta), f64::NAN],
+        match &mut self.in_valleys {
+            Some(in_valleys) => [in_valleys.raised.abscissa(xi, eta), f64::NAN],
             None => {
                 self.level_mut().and_then(|level| level.at(xi, eta)).map_or([f64::NAN; 2], |at| at.abscissae)
             }
@@ -228,7 +230,7 @@ impl<'a> Slicer<'a> {
     /// Returns the raised points at 16 ξ \[mm\] of a rail.
     pub(super) fn raised(&self, xi: &Lanes) -> RaisedLanes<MANY> {
         let over_plane = || RaisedLanes::over_plane(xi, self.approach);
-        self.skewed.as_ref().map_or_else(over_plane, |skewed| skewed.raised.lanes(xi))
+        self.in_valleys.as_ref().map_or_else(over_plane, |in_valleys| in_valleys.raised.lanes(xi))
     }
 
     /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, with skew that of `valley`, up to both
@@ -239,7 +241,7 @@ impl<'a> Slicer<'a> {
         [low, high]: &[Lanes; 2],
         valley: impl Fn(f64) -> Option<usize>,
     ) -> bool {
-        self.skewed.as_ref().is_none_or(|Skewed { valleys, raised, .. }| {
+        self.in_valleys.as_ref().is_none_or(|InValleys { valleys, raised, .. }| {
             let places = raised.lanes(xi).xi;
             let alone = |k: usize| {
                 let eta = Interval::new(low[k], high[k]);
@@ -288,8 +290,8 @@ impl<'a> Slicer<'a> {
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.lowest(xi);
         }
-        let Some(skewed) = &mut self.skewed else { return 0.0 };
-        skewed.lowest_valley(xi).map_or(f64::NAN, |valley| skewed.spot(valley, xi).eta)
+        let Some(in_valleys) = &mut self.in_valleys else { return 0.0 };
+        in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.spot(valley, xi).eta)
     }
 
     /// Returns η of a valley at ξ \[mm\]; 0 without skew.
@@ -300,8 +302,8 @@ impl<'a> Slicer<'a> {
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.lowest(xi);
         }
-        let places = self.skewed.as_ref().zip(valley);
-        places.map_or(0.0, |(skewed, valley)| skewed.spot(valley, xi).eta)
+        let places = self.in_valleys.as_ref().zip(valley);
+        places.map_or(0.0, |(in_valleys, valley)| in_valleys.spot(valley, xi).eta)
     }
 
     /// Returns η \[mm\] of the least gap over a valley at ξ; 0 without skew.
@@ -310,11 +312,11 @@ impl<'a> Slicer<'a> {
     /// found in `steps`, each of which makes the error of t, which is the square of that of η, a millionth.
     pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64, steps: usize) -> f64 {
         let mut eta = self.valley(valley, xi);
-        if let (Some(skewed), Some(level), Some(valley)) = (&self.skewed, &mut self.normal, valley) {
-            let steps = if skewed.valleys.is_turned() { steps } else { 0 };
+        if let (Some(in_valleys), Some(level), Some(valley)) = (&self.in_valleys, &mut self.normal, valley) {
+            let steps = if in_valleys.valleys.is_turned() { steps } else { 0 };
             for _ in 0..steps {
                 let Some(along) = level.along_normal(xi, eta) else { break };
-                eta = skewed.valleys.spot(valley, along).eta;
+                eta = in_valleys.valleys.spot(valley, along).eta;
             }
         }
         eta
@@ -322,17 +324,11 @@ impl<'a> Slicer<'a> {
 
     /// Returns \[s, η\] \[mm\]. If rounding ends the surface too early, it returns a place on the surface next to η.
     pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        if self.skewed.is_some() {
+        if self.in_valleys.is_some() {
             on_surface(self.placement, eta, |eta| self.separation(xi, eta))
         } else {
             [self.separation(xi, eta), eta]
         }
-    }
-
-    /// Returns dη/dξ at a point of the boundary: −s_ξ/s_η, which is infinite at a tip.
-    pub fn boundary_slope(&mut self, xi: f64, eta: f64) -> f64 {
-        let [along, across] = self.gradient(xi, eta);
-        -along / across
     }
 
     /// Returns \[∂s/∂ξ, ∂s/∂η\].

@@ -188,11 +188,6 @@ impl<'a> Evaluator<'a> {
         self.upper.height_and_normal(xi, eta).map_or([f64::NAN; 2], |(.., normal)| slopes(normal))
     }
 
-    /// Returns whether the lower body is a roller.
-    pub fn is_on_roller(&self) -> bool {
-        self.lower.is_some()
-    }
-
     /// Computes ζ(ξ, η) \[mm\] of the lower body; NaN off it. For an extruded rail it is [`Self::rail_height`] at every η.
     pub fn lower_height(&mut self, xi: f64, eta: f64) -> f64 {
         if let Some(feet) = &mut self.feet {

@@ -13,7 +13,7 @@ const LAST_CELL: f64 = 1e-6;
 /// Number of cells a side.
 const CELLS: usize = 4;
 /// Factor from the cells of one mesh to those of the next. The place found on one mesh is then well inside the next one.
-const CLOSER: f64 = 0.125;
+pub(crate) const CLOSER: f64 = 0.125;
 
 /// Most meshes of a search, sideways moves included.
 const MOST_MESHES: usize = 200;

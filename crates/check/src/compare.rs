@@ -22,11 +22,11 @@ use wheelrail::profile::Shape;
 
 /// Largest difference that counts as agreement, as a multiple of the larger one of floor and own estimate. The maxima over
 /// a few dozen points of the closed forms stand for those over all points.
-const SAFETY: f64 = 4.0;
+pub(crate) const SAFETY: f64 = 4.0;
 
-/// Error that the program itself may have, in roundings of the largest coordinate: it promises 2e-12 mm on
-/// profiles of 150 mm, 60 roundings.
-const ROUNDINGS: f64 = 64.0;
+/// Error that the program itself may have, per millimetre of the largest coordinate: it promises 2e-12 mm on profiles of 150 mm, 60
+/// roundings.
+pub(crate) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// Largest error estimate of the checker, as a share of the body's size, with which it can decide.
 const RESOLVED: f64 = 1e-11;
@@ -167,7 +167,7 @@ impl<'a> CheckTally<'a> {
     /// Returns the rounding that the program may have if the least normal has this ζ component \[mm\].
     fn rounding(&self, least_normal: f64) -> f64 {
         let size = self.rail.surface.size.max(self.wheel.surface.size);
-        ROUNDINGS * f64::EPSILON * size / least_normal
+        ROUNDINGS * size / least_normal
     }
 
     /// Measures at (ξ, η) and compares.
@@ -260,7 +260,7 @@ impl<'a> CheckTally<'a> {
         let differences = heights.iter().map(|h| {
             // A direction is a difference of points. The shorter its curve, the more digits it has lost.
             let digits = 1.0 + solid.surface.size / solid.surface.curves[h.place.curve].scale;
-            let rounding = ROUNDINGS * f64::EPSILON * digits / h.normal.z;
+            let rounding = ROUNDINGS * digits / h.normal.z;
             let allowed = SAFETY * floor.max(h.normal_error) + rounding;
             (normal.distance(h.normal), allowed, at)
         });

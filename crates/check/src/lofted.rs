@@ -16,6 +16,8 @@ use wheelrail::placement::Placement;
 use wheelrail::profile::Side;
 
 use super::body::{AlongZeta, FLANGEWAY, STEEPEST, Solid};
+use super::closest::CLOSER;
+use super::compare::{ROUNDINGS, SAFETY};
 use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{cells, parameters};
 use super::ray::extrapolated;
@@ -38,20 +40,11 @@ const MOST_POINTS: usize = 2_000_000;
 /// First and last cell of the meshes around a place, as a share of a coarse one. The last chords are off by less than 1e-12 mm.
 const CELLS: [f64; 2] = [0.5, 1e-5];
 
-/// Factor from the cells of one mesh around a place to those of the next.
-const CLOSER: f64 = 0.125;
-
 /// Cell whose diagonals give the normal, as a share of a coarse one.
 const NORMAL_CELL: f64 = 1.0 / 64.0;
 
 /// Distance \[mm\] in front of a point from which the ray to its sheet starts: more than the error of a coarse mesh.
 const NEAR: f64 = 0.5;
-
-/// Largest difference that counts as agreement, as a multiple of the checker's own estimate.
-const SAFETY: f64 = 4.0;
-
-/// Rounding of a height, per millimetre of the largest coordinate.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// Results of rays on meshes for a contact with a body that varies.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -12,16 +12,10 @@ use wheelrail::profile::{Profile, Segment, Shape, Side};
 
 use super::body::Solid;
 use super::closest::to_point;
-use super::compare::smallest_radius;
+use super::compare::{ROUNDINGS, SAFETY, smallest_radius};
 use super::floor::floors;
 use super::meshes::Vector;
 use super::sampler::SampledSurface;
-
-/// Largest difference that counts as agreement, as a multiple of the floor and the mesh's own estimate.
-const SAFETY: f64 = 4.0;
-
-/// Error that the program itself may have \[mm\], per millimetre of the farthest point: 60 roundings.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// Largest sine of the angle between the line of the normal gap and the wheel's normal at which both count as one direction.
 const ONE_DIRECTION: f64 = 0.05;

@@ -69,21 +69,32 @@ pub(crate) fn grid<'py>(
     py: Python<'py>,
     [(first, rows), (second, columns)]: [(&str, &[f64]); 2],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    /// Most points of a grid, 8 GB of numbers. A larger grid has axes in a wrong unit, or should be computed in blocks.
+    let shape = checked_shape([(first, rows), (second, columns)], 1)?;
+    // NumPy's own function raises where an allocation fails; its C interface gives a null pointer.
+    Ok(py.import("numpy")?.getattr("zeros")?.call1((shape,))?.cast_into()?)
+}
+
+/// Returns the numbers of rows and columns over two axes with their names, for arrays with so many numbers a point.
+///
+/// # Errors
+/// LimitError for more than 10⁹ numbers.
+pub(crate) fn checked_shape(
+    [(first, rows), (second, columns)]: [(&str, &[f64]); 2],
+    numbers: usize,
+) -> PyResult<(usize, usize)> {
+    /// Most numbers over a grid, 8 GB. A larger grid has axes in a wrong unit, or should be computed in blocks.
     const MOST: usize = 1_000_000_000;
     let (n, m) = (rows.len(), columns.len());
-    match n.checked_mul(m) {
-        Some(points) if points <= MOST => {}
-        _ => {
-            let found = format!("{n} x {m} points, which take {:.3e} bytes", 8.0 * n as f64 * m as f64);
-            let expected = format!("at most {MOST} points");
-            let error =
-                Error::new(format!("{first}, {second}"), found, expected, "take the grid in several blocks");
-            return Err(exception(error.of_kind(ErrorKind::Limit)));
-        }
+    if n.checked_mul(m).is_some_and(|points| points <= MOST / numbers) {
+        return Ok((n, m));
     }
-    // NumPy's own function raises where an allocation fails; its C interface gives a null pointer.
-    Ok(py.import("numpy")?.getattr("zeros")?.call1(((n, m),))?.cast_into()?)
+    let bytes = 8.0 * numbers as f64 * n as f64 * m as f64;
+    let (found, expected) = (
+        format!("{n} x {m} points, which take {bytes:.3e} bytes"),
+        format!("at most {} points", MOST / numbers),
+    );
+    let error = Error::new(format!("{first}, {second}"), found, expected, "take the grid in several blocks");
+    Err(exception(error.of_kind(ErrorKind::Limit)))
 }
 
 /// Makes an array (rows, columns) whose numbers are not set, for work that sets them all. NumPy asks for large pages, which Rust does not:

@@ -12,7 +12,7 @@ use wheelrail::scene;
 use wheelrail::separation::{EtaAxis, Evaluator, midplane_table, plan};
 use wheelrail::{Error, Placement, Window};
 
-use crate::arrays::{array, grid, values};
+use crate::arrays::{array, checked_shape, grid, values};
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, warn};
 use crate::filling::{checked_axes, fill, named_method};
@@ -253,7 +253,7 @@ impl Contact {
     /// Compute the outward unit normals of rail and wheel over a grid, in the contact frame: (rail, wheel), each float64 (n_xi,
     /// n_eta, 3), NaN where a body has no surface. `xi` and `eta` are as of `separation`.
     ///
-    /// Raises InputError for axes that do not ascend; LimitError for more than 10**9 points.
+    /// Raises InputError for axes that do not ascend; LimitError for more than 10**9 numbers.
     fn normals<'py>(
         &self,
         py: Python<'py>,
@@ -261,9 +261,8 @@ impl Contact {
         eta: &Bound<'py, PyAny>,
     ) -> PyResult<NormalArrays<'py>> {
         let [xi, eta] = checked_axes(("xi", xi), eta, 1.0)?;
-        // This array is made only to check the number of points.
         let placement = self.placement()?;
-        grid(py, [("xi", &xi), ("eta", &eta)])?;
+        checked_shape([("xi", &xi), ("eta", &eta)], 2 * 3)?;
         let [rail, wheel] = detached(py, || {
             let mut evaluator = Evaluator::new(placement);
             let mut all = [const { Vec::new() }; 2];

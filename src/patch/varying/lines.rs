@@ -9,8 +9,8 @@
 
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
+use crate::patch::in_valleys::slicer::Edge;
 use crate::patch::level::Level;
-use crate::patch::skewed::slicer::Edge;
 use crate::patch::window::Window;
 use crate::placement::Placement;
 

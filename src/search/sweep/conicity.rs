@@ -30,6 +30,8 @@ mod refine;
 #[cfg(test)]
 mod tests;
 
+use std::fmt;
+
 use branches::Searched;
 use movement::{Movement, Quarter};
 use refine::{LEAST_AMPLITUDE, RefinedTable, most_searches};
@@ -110,6 +112,18 @@ pub enum NoConicity {
     /// The movement does not come back through 0: Δr does not restore there, or turns the movement back on
     /// the way.
     NotRestoring,
+}
+
+impl fmt::Display for NoConicity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotAsked => "it was not asked for",
+            Self::GivenRoll => "the roll is given: the wheelset is held",
+            Self::NoAmplitude => "the amplitude is 0",
+            Self::OffTrack => "a wheel leaves its rail within the amplitude",
+            Self::NotRestoring => "the movement does not come back through the centre",
+        })
+    }
 }
 
 /// T over one cell, in Newton's form in s = √((y − y_k)/(y_(k+1) − y_k)): beyond a jump of Δr, T grows with

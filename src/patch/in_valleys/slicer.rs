@@ -86,7 +86,7 @@ pub(in crate::patch) fn on_surface(
 
 /// Finds the slices under a skewed wheel, or over the rail's surface, at one approach.
 #[derive(Debug)]
-pub(in crate::patch) struct Skewed<'a> {
+pub(in crate::patch) struct InValleys<'a> {
     placement: &'a Placement,
     pub(in crate::patch) raised: Raised<'a>,
     /// The wheel's valleys and ridges.
@@ -95,7 +95,7 @@ pub(in crate::patch) struct Skewed<'a> {
     stops: Vec<f64>,
 }
 
-impl<'a> Skewed<'a> {
+impl<'a> InValleys<'a> {
     /// Makes the slices of a placed pair for approach δ \[mm\], over the tangent plane or over the rail's `surface`.
     pub(in crate::patch) fn new(
         placement: &'a Placement,

@@ -79,10 +79,10 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn
 
 /// Returns the range of ξ that the rail, the window and, over the tangent plane, the valleys have in common; `None` if it is empty.
 fn searched(outline: &Outline<'_>) -> Option<Interval> {
-    let skewed = outline.slicer.skewed.as_ref()?;
-    let mut over = outline.window.xi.cut(skewed.raised.reach()?);
+    let in_valleys = outline.slicer.in_valleys.as_ref()?;
+    let mut over = outline.window.xi.cut(in_valleys.raised.reach()?);
     if !outline.slicer.is_over_rail() {
-        let valleys = skewed.valleys.creases.iter().filter(|crease| crease.is_valley);
+        let valleys = in_valleys.valleys.creases.iter().filter(|crease| crease.is_valley);
         over = over.cut(valleys.fold(Interval::NONE, |under, crease| under.hull(crease.xi)));
     }
     Some(over).filter(|over| over.has_width())
@@ -91,8 +91,8 @@ fn searched(outline: &Outline<'_>) -> Option<Interval> {
 /// Returns the valleys inside the patch at ξ, grouped by interval, the groups by ascending η.
 fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
     let near = TOUCH * outline.slicer.placement().rolling_radius();
-    let Some(skewed) = &outline.slicer.skewed else { return Vec::new() };
-    let over: Vec<usize> = skewed.over(xi).filter(|&k| skewed.valleys.creases[k].is_valley).collect();
+    let Some(in_valleys) = &outline.slicer.in_valleys else { return Vec::new() };
+    let over: Vec<usize> = in_valleys.over(xi).filter(|&k| in_valleys.valleys.creases[k].is_valley).collect();
     let places = over.into_iter().map(|crease| {
         let depth = outline.depth(Some(crease), xi);
         Inside { eta: outline.slicer.valley(Some(crease), xi), depth, crease }
@@ -225,9 +225,9 @@ impl LaneWalk<'_, '_> {
     /// Returns η at which two intervals meet: on a ridge or the circle of an end between them, or else half-way.
     fn meeting_point(&self, xi: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = from + (to - from) / 2.0;
-        let Some(skewed) = &self.outline.slicer.skewed else { return middle };
-        let ridges = skewed.over(xi).filter(|&k| !skewed.valleys.creases[k].is_valley);
-        let places = ridges.map(|k| skewed.spot(k, xi).eta).chain(skewed.rims(xi));
+        let Some(in_valleys) = &self.outline.slicer.in_valleys else { return middle };
+        let ridges = in_valleys.over(xi).filter(|&k| !in_valleys.valleys.creases[k].is_valley);
+        let places = ridges.map(|k| in_valleys.spot(k, xi).eta).chain(in_valleys.rims(xi));
         let between = places.filter(|&eta| Interval::between(from, to).contains(eta));
         let nearest = between.min_by(|p, q| (p - middle).abs().total_cmp(&(q - middle).abs()));
         nearest.unwrap_or(middle)

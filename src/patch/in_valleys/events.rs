@@ -24,28 +24,34 @@ pub(in crate::patch) struct Events {
 pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: Interval) -> Events {
     let mut events = Events::default();
     let approach = outline.slicer.approach();
-    let count = outline.slicer.skewed.as_ref().map_or(0, |skewed| skewed.valleys.creases.len());
+    let count = outline.slicer.in_valleys.as_ref().map_or(0, |in_valleys| in_valleys.valleys.creases.len());
     let over_rail = outline.slicer.is_over_rail();
-    let raised = outline.slicer.skewed.as_ref().map(|skewed| &skewed.raised);
+    let raised = outline.slicer.in_valleys.as_ref().map(|in_valleys| &in_valleys.raised);
     let pieces: Vec<_> = raised.into_iter().flat_map(|raised| raised.pieces(range)).collect();
     let (mut intervals, mut level) = (Vec::new(), Vec::new());
     for crease in 0..count {
-        let Some(skewed) = &mut outline.slicer.skewed else { break };
-        let is_valley = skewed.valleys.creases[crease].is_valley;
-        for end in skewed.valleys.creases[crease].xi.ends() {
-            for xi in skewed.raised.sigmas(end, range) {
+        let Some(in_valleys) = &mut outline.slicer.in_valleys else { break };
+        let is_valley = in_valleys.valleys.creases[crease].is_valley;
+        for end in in_valleys.valleys.creases[crease].xi.ends() {
+            for xi in in_valleys.raised.sigmas(end, range) {
                 // Where s is above δ, nothing begins or ends.
-                let above = skewed.depth(crease, xi) > 0.0;
+                let above = in_valleys.depth(crease, xi) > 0.0;
                 events.xi.extend((!above && range.surrounds(xi)).then_some(xi));
             }
         }
         intervals.clear();
         level.clear();
         if over_rail {
-            along_surface(&skewed.valleys, (&skewed.raised, &pieces), crease, &mut intervals, &mut level);
+            along_surface(
+                &in_valleys.valleys,
+                (&in_valleys.raised, &pieces),
+                crease,
+                &mut intervals,
+                &mut level,
+            );
         } else {
             let matters = |s: Interval| s.low < approach && (is_valley || s.high > approach);
-            monotone(&skewed.valleys, skewed.raised.rail(), crease, range, matters, &mut intervals);
+            monotone(&in_valleys.valleys, in_valleys.raised.rail(), crease, range, matters, &mut intervals);
         }
         for interval in &intervals {
             let ends = [interval.low.next_up(), interval.high];
@@ -129,5 +135,5 @@ fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, over: Interval
 
 /// Returns s − δ at the place of a valley or ridge \[mm\], inside or outside the window.
 fn crease_depth(outline: &mut Outline<'_>, crease: usize, xi: f64) -> f64 {
-    outline.slicer.skewed.as_mut().map_or(f64::NAN, |skewed| skewed.depth(crease, xi))
+    outline.slicer.in_valleys.as_mut().map_or(f64::NAN, |in_valleys| in_valleys.depth(crease, xi))
 }
