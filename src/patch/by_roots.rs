@@ -107,26 +107,31 @@ impl<'a> ByRoots<'a> {
         None
     }
 
-    /// Returns whether the bodies are surely farther apart than δ along all lines of an interval of ξ. Over the roller's surface that is
-    /// not known.
+    /// Returns whether the bodies are surely farther apart than δ along all lines of an interval of ξ, or have no surface at η = 0 at
+    /// either end of it. Over the roller's surface that is not known.
     ///
     /// Method: with skew, a parabola with the gap and slope at η = 0 falls below that gap by slope²/4a, with a the opening; slope²/a is
-    /// allowed for. From either end of the interval the gap falls by no more than bounds of the profiles' slopes allow.
+    /// allowed for. From either end of the interval the gap falls by no more than bounds of the profiles' slopes allow, unless one steps.
     pub(super) fn is_apart(&mut self, over: Interval) -> bool {
         if self.level.normal_gap().is_some() {
             return false;
         }
+        let ends = over.ends().map(|xi| self.level.at(xi, 0.0).filter(|at| !at.gap.is_nan()));
+        let known = || ends.iter().flatten();
+        let mut slopes = Interval::of(0.0);
+        for (body, section) in self.sections.iter().enumerate() {
+            let Some(section) = section else { continue };
+            let met = Interval::around(known().map(|at| at.abscissae[body])).grown(over.width());
+            if self.steps[body].iter().any(|step| step.meets(met)) {
+                return false;
+            }
+            slopes = slopes + section.slopes_over(met);
+        }
+        let falls = [slopes.low.min(0.0), -slopes.high.max(0.0)].map(|fall| fall * over.width());
+        let least = ends.iter().zip(falls).filter_map(|(at, fall)| Some(at.as_ref()?.gap + fall));
         let allowed = if self.skewed { self.opening.recip() } else { 0.0 };
-        let [Some(a), Some(b)] = over.ends().map(|xi| self.level.at(xi, 0.0)) else { return false };
-        let slopes = [0, 1].map(|body| {
-            let met = Interval::between(a.abscissae[body], b.abscissae[body]).grown(over.width());
-            self.sections[body].map_or(Interval::of(0.0), |section| section.slopes_over(met))
-        });
-        let (slope, length) = (slopes[0] + slopes[1], over.width());
-        let fall = |at: &GapSlopes| allowed * at.slopes[1] * at.slopes[1];
-        let from_a = a.gap + slope.low.min(0.0) * length;
-        let from_b = b.gap - slope.high.max(0.0) * length;
-        from_a.max(from_b) - fall(&a).max(fall(&b)) > self.approach
+        let below = known().map(|at| allowed * at.slopes[1] * at.slopes[1]).fold(0.0, f64::max);
+        known().next().is_none() || least.fold(f64::NEG_INFINITY, f64::max) - below > self.approach
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.

@@ -111,7 +111,8 @@ impl Patch {
     ///
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
     /// in [`Self::new`] with skew. On a rail the patch is where the point of the rail, raised by δ cos α along its normal, lies in the
-    /// wheel: a wheel thinner than that, which the normal enters and leaves again below the raised point, is overlooked.
+    /// wheel. Where the wheel's surface ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points along the
+    /// normals end.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }

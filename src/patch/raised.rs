@@ -261,3 +261,39 @@ fn most_curved(branch: &Branch, seconds: Interval) -> f64 {
         BranchShape::Polynomial(_) => seconds.magnitude(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformal::NormalGap;
+    use crate::error::Result;
+    use crate::placement::Pair;
+    use crate::profile::{Arc, Half, Profile, Segment};
+
+    /// A gauge corner of 13 mm in a root of 14 mm.
+    #[test]
+    fn the_raised_point_is_on_the_wheel_where_the_normal_gap_is_the_approach_and_slopes_are_those_of_differences()
+    -> Result<()> {
+        let arc = |radius: f64| -> Result<Profile> {
+            let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-11.0, 11.0])?;
+            Profile::new("arc", "", vec![Segment::arc(arc)])
+        };
+        let pair = Pair::new(arc(13.0)?, arc(14.0)?, 460.0)?;
+        for skew in [0.0, 0.03] {
+            let (placement, approach) = (pair.placed(0.0, 0.0, skew)?, 0.3);
+            let normal = NormalGap::new(&placement);
+            let mut raised = Raised::new(&placement, approach, Some(normal.rail().clone()));
+            for sigma in [-3.0, 0.5, 2.0] {
+                let miss = |eta: f64| normal.gap(sigma, eta) - approach * normal.angle(sigma).cos();
+                let edge = bracketed(miss, 0.0, 30.0).expect("an edge");
+                assert!(raised.gap(sigma, edge).abs() < 1e-13, "{skew} {sigma}: {}", raised.gap(sigma, edge));
+                let step = 1e-4;
+                let difference =
+                    (raised.gap(sigma + step, edge) - raised.gap(sigma - step, edge)) / (2.0 * step);
+                let slope = raised.slope_along(sigma, edge);
+                assert!((slope - difference).abs() < 1e-9, "{skew} {sigma}: {slope} and {difference}");
+            }
+        }
+        Ok(())
+    }
+}

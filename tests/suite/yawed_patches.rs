@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::common::{profile, references};
 use wheelrail::Interval;
 use wheelrail::case::{Run, SILENT};
+use wheelrail::conformal::NormalGap;
 use wheelrail::internal::bracketed;
 use wheelrail::load::feasibility;
 use wheelrail::mesh::{StripCounts, StripMesh};
@@ -28,9 +29,9 @@ const NEAR: Window = Window { xi: Interval::symmetric(8.0), eta: Interval::symme
 /// No scene may take longer, on a loaded machine.
 const LONGEST: Duration = Duration::from_secs(20);
 
-/// All intervals of η in which s < δ, but for those between two of the points.
-fn scanned(evaluator: &mut Evaluator<'_>, xi: f64, over: Interval, delta: f64) -> Vec<Interval> {
-    let mut inside = |eta: f64| evaluator.separation(xi, eta) < delta;
+/// All intervals of η in which a gap is negative at ξ, but for those between two of the points.
+fn scanned(gap: &mut impl FnMut(f64, f64) -> f64, xi: f64, over: Interval) -> Vec<Interval> {
+    let mut inside = |eta: f64| gap(xi, eta) < 0.0;
     let eta = |k: usize| over.step(k, POINTS);
     let mut intervals: Vec<Interval> = Vec::new();
     let mut before = inside(over.low);
@@ -67,18 +68,16 @@ fn widths(intervals: &[Interval]) -> f64 {
     intervals.iter().map(|eta| eta.width()).sum()
 }
 
-/// Checks a patch near C line by line, its area, loops and mesh; the patch.
-fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
-    let patch = Patch::new(placement, delta, &NEAR);
+/// Checks a patch line by line, its area and loops. `gap` is negative inside it.
+fn by_lines(name: &str, patch: &Patch, mut gap: impl FnMut(f64, f64) -> f64) {
     let extent = patch.extent().unwrap_or_else(|| panic!("{name}: empty"));
     let wider = |side: Interval, most: Interval| side.grown(MARGIN * side.width()).cut(most);
     let [xi, eta] = [wider(extent.xi, NEAR.xi), wider(extent.eta, NEAR.eta)];
-    let mut evaluator = Evaluator::new(placement);
     let (step, fine) = (xi.width() / LINES as f64, eta.width() / POINTS as f64);
     let mut area = 0.0;
     for k in 0..LINES {
         let xi = xi.low + step * (k as f64 + 0.5);
-        let [expected, found] = [scanned(&mut evaluator, xi, eta, delta), sliced(&patch, xi)];
+        let [expected, found] = [scanned(&mut gap, xi, eta), sliced(patch, xi)];
         area += step * widths(&expected);
         // What is narrower than two points the scan may miss.
         let all_wide = expected.iter().chain(&found).all(|eta| eta.width() > 2.0 * fine);
@@ -93,9 +92,22 @@ fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
         assert!((enclosed - c.area).abs() < 2e-3 * area, "{name}: loops around {enclosed} of {}", c.area);
         assert!(c.holes.iter().all(|hole| shoelace(hole) < 0.0), "{name}: a hole that runs the other way");
     }
+}
+
+/// Checks the patches near C over the tangent plane and over the rail's surface, and the mesh of the first; that patch.
+fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
+    let (patch, mut evaluator) = (Patch::new(placement, delta, &NEAR), Evaluator::new(placement));
+    by_lines(name, &patch, |xi, eta| evaluator.separation(xi, eta) - delta);
     let mesh = StripMesh::new(placement, &patch, StripCounts::default()).expect("a mesh");
     let meshed: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
     assert!((meshed / patch.area() - 1.0).abs() < 1e-6, "{name}: mesh of {meshed} over {}", patch.area());
+    // Over the rail's surface: how far the wheel is above the rail's point, raised by δ cos α along its normal.
+    let (over_rail, normal) = (Patch::over_rail(placement, delta, &NEAR), NormalGap::new(placement));
+    by_lines(&format!("{name}, over the rail"), &over_rail, |sigma, eta| {
+        let Some(at) = normal.rail().point(sigma) else { return f64::NAN };
+        let (xi, zeta) = (at.xi - delta * at.cos * at.sin, at.zeta + delta * at.cos * at.cos);
+        evaluator.separation(xi, eta) + evaluator.rail_height(xi) - zeta
+    });
     patch
 }
 
