@@ -39,21 +39,18 @@ pub(super) struct ByRoots<'a> {
     opening: f64,
     /// Least step of a surface \[mm\].
     step: f64,
-    /// The sections of both bodies.
-    sections: [Option<&'a Section>; 2],
     /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
     steps: [Vec<Interval>; 2],
 }
 
 impl<'a> ByRoots<'a> {
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
-    pub(super) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Self {
+    pub(super) fn new(placement: &Placement, approach: f64, level: Level<'a>) -> Self {
         let around = |body: &Body| body.section.frame.cos / body.axle_distance();
         let opening = 0.5 * (around(placement.wheel()) + around(placement.rail()));
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
-        let sections = sections(placement);
-        let steps = sections.map(|section| section.map_or_else(Vec::new, Section::steps));
-        Self { level, skewed: placement.skew() != 0.0, approach, opening, step, sections, steps }
+        let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
+        Self { level, skewed: placement.skew() != 0.0, approach, opening, step, steps }
     }
 
     /// Returns η \[mm\] of the least gap at ξ: 0 without skew; with skew NaN where a body has no surface at η = 0.
@@ -107,31 +104,14 @@ impl<'a> ByRoots<'a> {
         None
     }
 
-    /// Returns whether the bodies are surely farther apart than δ along all lines of an interval of ξ, or have no surface at η = 0 at
-    /// either end of it. Over the roller's surface that is not known.
+    /// Returns whether the bodies are surely farther apart than δ along the whole line of ξ; `None` where a body has no surface at η = 0.
     ///
     /// Method: with skew, a parabola with the gap and slope at η = 0 falls below that gap by slope²/4a, with a the opening; slope²/a is
-    /// allowed for. From either end of the interval the gap falls by no more than bounds of the profiles' slopes allow, unless one steps.
-    pub(super) fn is_apart(&mut self, over: Interval) -> bool {
-        if self.level.normal_gap().is_some() {
-            return false;
-        }
-        let ends = over.ends().map(|xi| self.level.at(xi, 0.0).filter(|at| !at.gap.is_nan()));
-        let known = || ends.iter().flatten();
-        let mut slopes = Interval::of(0.0);
-        for (body, section) in self.sections.iter().enumerate() {
-            let Some(section) = section else { continue };
-            let met = Interval::around(known().map(|at| at.abscissae[body])).grown(over.width());
-            if self.steps[body].iter().any(|step| step.meets(met)) {
-                return false;
-            }
-            slopes = slopes + section.slopes_over(met);
-        }
-        let falls = [slopes.low.min(0.0), -slopes.high.max(0.0)].map(|fall| fall * over.width());
-        let least = ends.iter().zip(falls).filter_map(|(at, fall)| Some(at.as_ref()?.gap + fall));
+    /// allowed for.
+    pub(super) fn is_apart(&mut self, xi: f64) -> Option<bool> {
         let allowed = if self.skewed { self.opening.recip() } else { 0.0 };
-        let below = known().map(|at| allowed * at.slopes[1] * at.slopes[1]).fold(0.0, f64::max);
-        known().next().is_none() || least.fold(f64::NEG_INFINITY, f64::max) - below > self.approach
+        let GapSlopes { gap, slopes: [_, across], .. } = self.level.at(xi, 0.0)?;
+        Some(gap - allowed * across * across > self.approach)
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.

@@ -13,7 +13,7 @@ use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
 
 /// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-11 of their distance.
-pub(super) const SLOPE_NOISE: f64 = 1e-11;
+const SLOPE_NOISE: f64 = 1e-11;
 
 /// Steps to the place of the least t, after which its error is rounding.
 const TO_NEAREST: usize = 2;

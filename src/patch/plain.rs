@@ -3,17 +3,16 @@
 
 use super::band::{Band, Turn, steps};
 use super::in_valleys::slicer::between;
-use super::outline::{End, Outline, SLOPE_NOISE};
+use super::outline::{End, Outline};
 use super::window::Window;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
-use crate::numerics::lanes::Lanes;
 use crate::numerics::roots::{bracketed, last_where};
-use crate::numerics::sign_changes::sign_changes;
 use crate::patch::turning_points;
 use crate::placement::Placement;
 
-/// Number of intervals into which the searched range is cut on a roller, so that most of them can be passed over.
+/// Number of intervals in which turns of the depth are sought over a roller's surface, and over its tangent plane if the lowest places along η
+/// are not in its midplane. A part is missed only between two turns within one of them.
 const WINDOW_INTERVALS: usize = 512;
 
 /// Returns the bands by ascending ξ, and the places at which s may be least.
@@ -107,7 +106,7 @@ fn closed(
 }
 
 /// Returns both ends of a range of ξ \[mm\], and all ξ between them where the depth may turn: joints and stationary points. The
-/// depth is monotone between neighbours, unless they are apart by more than δ.
+/// depth is monotone between neighbours, unless it turns twice within one of [`WINDOW_INTERVALS`].
 fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
     let [a, b] = over.ends();
     let over_rail = outline.slicer.is_over_rail();
@@ -134,25 +133,31 @@ fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
 }
 
 /// Returns both ends of a range of ξ \[mm\], and between them known places, equal steps and the turns of the depth between these,
-/// ascending. Steps over which the bodies are surely apart are left out.
+/// ascending. Places outside the patch whose neighbours are outside, too, are left out.
 fn sampled_turns(outline: &mut Outline<'_>, mut places: Vec<f64>, over: Interval) -> Vec<f64> {
     places.extend((1..WINDOW_INTERVALS).map(|k| over.step(k, WINDOW_INTERVALS)));
     places.sort_by(f64::total_cmp);
     places.dedup();
+    // The midplane has a surface wherever a slice has one.
+    let missing = outline.window.eta.contains(0.0);
+    let by_roots = outline.slicer.by_roots.as_mut();
+    let apart: Vec<bool> = match by_roots {
+        Some(slices) => places.iter().map(|&xi| slices.is_apart(xi).unwrap_or(missing)).collect(),
+        None => vec![false; places.len()],
+    };
+    // At the lowest place along η, the slope of the gap has no part along η.
+    let mut slope = |xi: f64| {
+        let floor = outline.floor(None, xi);
+        outline.slicer.gradient(xi, floor)[0]
+    };
     let mut turns = vec![over.low];
-    for pair in places.windows(2) {
-        let between = Interval::new(pair[0], pair[1]);
-        if outline.slicer.by_roots.as_mut().is_some_and(|slices| slices.is_apart(between)) {
+    for (pair, apart) in places.windows(2).zip(apart.windows(2)) {
+        if apart == [true; 2] {
             continue;
         }
-        turns.push(between.low);
-        // At the lowest place along η, the slope of the gap has no part along η.
-        let mut slope = |xi: f64| {
-            let floor = outline.floor(None, xi);
-            outline.slicer.gradient(xi, floor)[0]
-        };
-        sign_changes(|xi: &Lanes| xi.map(&mut slope), between, SLOPE_NOISE, &mut turns);
-        turns.push(between.high);
+        turns.push(pair[0]);
+        turns.extend(bracketed(&mut slope, pair[0].next_up(), pair[1]));
+        turns.push(pair[1]);
     }
     turns.push(over.high);
     turns.dedup();

@@ -129,13 +129,6 @@ impl Section {
         *slopes.get_or_init(|| self.branches[*branch].slope_bounds(*xi))
     }
 
-    /// Returns bounds of ζ′ over all pieces of the envelope that meet an interval of ξ \[mm\]; none of them if there are none.
-    pub(crate) fn slopes_over(&self, xi: Interval) -> Interval {
-        let first = self.pieces.len() - self.pieces_from(xi.low).len();
-        let met = (first..self.pieces.len()).take_while(|&piece| self.pieces[piece].xi.low <= xi.high);
-        met.fold(Interval::NONE, |slopes, piece| slopes.hull(self.slopes(piece)))
-    }
-
     /// Returns an end of a piece, 0 the one at smaller ξ, as a point of its branch, and its ζ \[mm\]. The ends are found once.
     pub(crate) fn end(&self, piece: &Piece, end: usize) -> (BranchPoint, f64) {
         let point = |xi| self.branches[piece.branch].point(xi);
