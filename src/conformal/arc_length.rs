@@ -63,10 +63,11 @@ struct BranchStretch<'a> {
 enum StretchCurve<'a> {
     /// A line or arc through a station.
     Arc { begin: f64, from: Station, radius: f64 },
-    /// A polynomial from its point t.low to t.high, of which neither need be the larger.
+    /// A polynomial from the first of two parameters to the second, which need not be larger. Its mean speed is found when it is asked
+    /// for; `None` if that is not resolved.
     Polynomial {
         begin: f64,
-        t: Interval,
+        t: [f64; 2],
         branch: &'a PolynomialBranch,
         mean: OnceLock<Option<Box<MeanSpeed>>>,
     },
@@ -141,8 +142,8 @@ impl<'a> RailArcLength<'a> {
     /// reach.
     ///
     /// Accuracy: on the segment through C a few roundings of each coordinate, relative to σ; elsewhere a few roundings of
-    /// the profile's extent. Cost: a sine and a cosine on arcs; on a polynomial three steps with
-    /// the series of its mean speed, which the first point of a stretch takes 16 short quadratures to find.
+    /// the profile's extent. Cost: a sine and a cosine on arcs; on polynomials three Newton steps, and 16 short quadratures for the first
+    /// point of each.
     pub fn point(&self, sigma: f64) -> Option<RailPoint> {
         let index = self.stretches.partition_point(|stretch| stretch.sigma.high < sigma);
         let stretch = self.stretches.get(index).filter(|stretch| stretch.sigma.low <= sigma)?;
@@ -179,7 +180,7 @@ impl<'a> BranchStretch<'a> {
                 let t = if on_contact && xi == 0.0 { 0.0 } else { branch.parameter(xi) };
                 let end = branch.parameter(far);
                 let mean = OnceLock::new();
-                let curve = StretchCurve::Polynomial { begin, t: Interval::new(t, end), branch, mean };
+                let curve = StretchCurve::Polynomial { begin, t: [t, end], branch, mean };
                 (curve, run_length(branch, t, end))
             }
         };
@@ -222,10 +223,10 @@ impl StretchCurve<'_> {
                 (station.placed_by(from), 1.0 / radius)
             }
             Self::Polynomial { begin, t, branch, mean } => {
-                let (from, length) = (t.low, sigma - begin);
+                let length = sigma - begin;
                 let t = match mean.get_or_init(|| MeanSpeed::new(branch, *t).map(Box::new)) {
-                    Some(mean) => mean.parameter(branch, *t, length),
-                    None => parameter(branch, from, length),
+                    Some(mean) => mean.parameter(branch, length),
+                    None => parameter(branch, t[0], length),
                 };
                 let ([x, dx, hx], [z, dz, hz]) = (derivatives(&branch.xi, t), derivatives(&branch.zeta, t));
                 let speed = dx.hypot(dz);
@@ -240,29 +241,35 @@ impl StretchCurve<'_> {
 /// it is the quotient by the parameter run through, it keeps its digits near the first point.
 #[derive(Debug, Clone)]
 struct MeanSpeed {
-    /// A sum of Chebyshev polynomials over the range.
+    first: f64,
+    /// Middle of the range of the parameter, and half its width, negative if the first point is the largest.
+    middle: f64,
+    half: f64,
+    /// Of Chebyshev polynomials over the range.
     coefficients: Lanes,
 }
 
 impl MeanSpeed {
     /// Interpolates the mean over a range; `None` if 16 points do not resolve it.
-    fn new(branch: &PolynomialBranch, t: Interval) -> Option<Self> {
-        let (middle, half) = (t.middle(), t.width() / 2.0);
+    fn new(branch: &PolynomialBranch, [first, last]: [f64; 2]) -> Option<Self> {
+        let half = (last - first) / 2.0;
+        let middle = first + half;
         let mean = |node: f64| {
             let at = middle + half * node;
-            run_length(branch, t.low, at) / (at - t.low)
+            run_length(branch, first, at) / (at - first)
         };
         let coefficients = coefficients_by_vectors(&NODES.map(mean));
         let tail = coefficients[POINTS - PROOF..].iter().map(|c| c.abs()).sum::<f64>();
-        (tail <= f64::EPSILON * coefficients[0]).then_some(Self { coefficients })
+        (tail <= f64::EPSILON * coefficients[0]).then_some(Self { first, middle, half, coefficients })
     }
 
     /// Finds the parameter at a length \[mm\] from the first point, by Newton's method held inside the range.
-    fn parameter(&self, branch: &PolynomialBranch, over: Interval, length: f64) -> f64 {
-        let (first, range) = (over.low, Interval::between(over.low, over.high));
+    fn parameter(&self, branch: &PolynomialBranch, length: f64) -> f64 {
+        let first = self.first;
+        let range = Interval::between(first, self.middle + self.half);
         let mut t = range.nearest(first + length / self.coefficients[0]);
         for _ in 0..STEPS {
-            let mean = value(&self.coefficients, (t - over.middle()) / (over.width() / 2.0));
+            let mean = value(&self.coefficients, (t - self.middle) / self.half);
             let next = range.nearest(t + (length - (t - first) * mean) / speed(branch, t));
             let step = next - t;
             t = next;

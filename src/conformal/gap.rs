@@ -238,20 +238,24 @@ impl WheelPoint {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::error::Result;
     use crate::placement::Pair;
     use crate::profile::{Arc, Half, Profile, Segment};
 
-    /// A gauge corner of 13 mm in a root of 14 mm, on a rail and on a roller.
-    #[test]
-    fn slopes_are_those_of_differences() -> Result<()> {
+    /// Makes a gauge corner of 13 mm in a root of 14 mm, on a wheel of 460 mm.
+    pub(crate) fn corner_in_root() -> Result<Pair> {
         let arc = |radius: f64| -> Result<Profile> {
             let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-11.0, 11.0])?;
             Profile::new("arc", "", vec![Segment::arc(arc)])
         };
-        let pair = Pair::new(arc(13.0)?, arc(14.0)?, 460.0)?;
+        Pair::new(arc(13.0)?, arc(14.0)?, 460.0)
+    }
+
+    #[test]
+    fn slopes_are_those_of_differences_on_a_rail_and_on_a_roller() -> Result<()> {
+        let pair = corner_in_root()?;
         for (pair, skew) in [(pair.clone(), 0.0), (pair.clone(), 0.03), (pair.on_roller(350.0)?, 0.03)] {
             let placement = pair.placed(0.0, 0.0, skew)?;
             let gap = NormalGap::new(&placement);

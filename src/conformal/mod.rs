@@ -26,5 +26,7 @@ mod span;
 
 pub use arc_length::{RailArcLength, RailPoint};
 pub use columns::fill_normal_gap;
+#[cfg(test)]
+pub(crate) use gap::tests::corner_in_root;
 pub use gap::{GapColumn, GapPoint, NormalGap};
 pub use reference::Reference;

@@ -182,6 +182,17 @@ impl Interval {
         [Self::new(self.low, at), Self::new(at, self.high)]
     }
 
+    /// Gives the parts between the ends and the places inside, ascending. `places` may hold others and be in any order.
+    pub fn parts(self, mut places: Vec<f64>) -> impl Iterator<Item = Self> {
+        places.retain(|place| self.surrounds(*place));
+        places.sort_by(f64::total_cmp);
+        let mut low = self.low;
+        places
+            .into_iter()
+            .chain([self.high])
+            .map(move |high| Self::new(std::mem::replace(&mut low, high), high))
+    }
+
     /// Gives the interval with both ends moved outwards by `margin`.
     #[inline(always)]
     pub fn grown(self, margin: f64) -> Self {

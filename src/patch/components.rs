@@ -274,7 +274,8 @@ impl BandGroup {
         for band in &mut self.bands {
             band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
-            if outline.slicer.by_roots.is_some() || outline.slicer.is_over_rail() && !varying {
+            let over_surface = outline.slicer.is_over_rail() && !varying;
+            if over_surface || outline.slicer.by_roots.is_some() {
                 corners::over_joints(&mut outline.slicer, band, &mut more);
             } else if let Some(least) = least {
                 corners::plain(outline, band, least, &mut more);

@@ -46,8 +46,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns ξ \[mm\] of the wheel's point on the rail's normal; `None` over the tangent plane, and where the normal misses the wheel.
-    pub(super) fn along_normal(&mut self, sigma: f64, eta: f64) -> Option<f64> {
+    /// Returns ξ \[mm\] of the wheel's point that the rail's normal meets; `None` over the tangent plane, and where it misses the wheel.
+    pub(super) fn met_by_normal(&mut self, sigma: f64, eta: f64) -> Option<f64> {
         let Self::Rail { gap, column, .. } = self else { return None };
         let column = known(gap, column, sigma)?;
         let (t, rail) = (gap.gap_in(column, eta), column.rail);

@@ -15,9 +15,6 @@ use crate::placement::Placement;
 /// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-11 of their distance.
 const SLOPE_NOISE: f64 = 1e-11;
 
-/// Steps to the place of the least t, after which its error is rounding.
-const TO_NEAREST: usize = 2;
-
 /// What bounds a component at one of its ends in ξ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -121,19 +118,20 @@ impl<'a> Outline<'a> {
     /// Appends the σ inside a range \[mm\] at which the least t over a valley turns.
     pub(super) fn turns_over_rail(&mut self, valley: usize, over: Interval, turns: &mut Vec<f64>) {
         let mut slope = |sigma: f64| {
-            let eta = self.nearest_to_rail(Some(valley), sigma, 1);
+            let eta = self.nearest_to_rail(Some(valley), sigma);
             self.slicer.gradient(sigma, eta)[0]
         };
         sign_changes(|sigma: &Lanes| sigma.map(&mut slope), over, SLOPE_NOISE, turns);
     }
 
-    fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64, steps: usize) -> f64 {
-        self.window.eta.nearest(self.slicer.nearest_to_rail(valley, xi, steps))
+    /// Returns η \[mm\] of the least gap over a valley at ξ within the window.
+    fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        self.window.eta.nearest(self.slicer.nearest_to_rail(valley, xi))
     }
 
     /// Returns \[s, ξ, η\] of the least s at ξ within the window; with skew, over `valley`.
     pub(super) fn lowest(&mut self, valley: Option<usize>, xi: f64) -> [f64; 3] {
-        let floor = self.nearest_to_rail(valley, xi, TO_NEAREST);
+        let floor = self.nearest_to_rail(valley, xi);
         let [s, eta] = self.slicer.on_surface(xi, floor);
         [s, xi, eta]
     }

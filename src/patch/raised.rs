@@ -33,6 +33,7 @@ pub(super) struct Raised<'a> {
 /// A point of the rail's profile and how far it is raised.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RaisedPoint {
+    /// σ \[mm\]; ξ over the tangent plane.
     sigma: f64,
     /// ξ of the profile's point \[mm\].
     pub(super) foot: f64,
@@ -192,6 +193,7 @@ impl<'a> Raised<'a> {
         inside.filter(|piece| piece.sigma.has_width())
     }
 
+    /// Bounds the raised curve over a piece of the rail, which is over a range of σ \[mm\].
     fn piece(&self, sigma: Interval, index: usize) -> RaisedPiece {
         let (rail, approach) = (self.rail(), self.approach);
         let piece = &rail.pieces[index];
@@ -201,7 +203,7 @@ impl<'a> Raised<'a> {
         let bulge = seconds.magnitude() * piece.xi.width().powi(2) / 8.0;
         let heights = Interval::between(piece.heights[0], piece.heights[1]).grown(bulge);
         let bounds = [piece.xi.grown(approach.abs() / 2.0), heights.hull(heights + approach)];
-        // Of the lines along which t + δ (1 − cos α) is constant, and lies between −δ and δ.
+        // These bounds hold for all curves along which t + δ (1 − cos α) is constant and |t| at most δ; the raised curve is one of them.
         let turned = 2.0 * approach.abs() * most_curved(branch, seconds);
         let flattest = slopes.nearest(0.0);
         let cosines = Interval::between(cosine(slopes.magnitude()), cosine(flattest));
@@ -218,9 +220,7 @@ impl<'a> Raised<'a> {
         let mut turns = Vec::new();
         let run = |sigma: &Lanes| sigma.map(|sigma| self.direction(sigma)[0]);
         sign_changes(run, piece.sigma, DIRECTION_NOISE, &mut turns);
-        turns.retain(|turn| piece.sigma.surrounds(*turn));
-        let ends: Vec<f64> = [piece.sigma.low].into_iter().chain(turns).chain([piece.sigma.high]).collect();
-        ends.windows(2).map(|pair| Interval::new(pair[0], pair[1])).collect()
+        piece.sigma.parts(turns).collect()
     }
 
     /// Returns the part of a run whose ξ lie in an interval \[mm\]; `None` if there is none.
@@ -265,20 +265,13 @@ fn most_curved(branch: &Branch, seconds: Interval) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conformal::NormalGap;
+    use crate::conformal::{NormalGap, corner_in_root};
     use crate::error::Result;
-    use crate::placement::Pair;
-    use crate::profile::{Arc, Half, Profile, Segment};
 
-    /// A gauge corner of 13 mm in a root of 14 mm.
     #[test]
     fn the_raised_point_is_on_the_wheel_where_the_normal_gap_is_the_approach_and_slopes_are_those_of_differences()
     -> Result<()> {
-        let arc = |radius: f64| -> Result<Profile> {
-            let arc = Arc::about([0.0, -radius], radius, Half::Upper, [-11.0, 11.0])?;
-            Profile::new("arc", "", vec![Segment::arc(arc)])
-        };
-        let pair = Pair::new(arc(13.0)?, arc(14.0)?, 460.0)?;
+        let pair = corner_in_root()?;
         for skew in [0.0, 0.03] {
             let (placement, approach) = (pair.placed(0.0, 0.0, skew)?, 0.3);
             let normal = NormalGap::new(&placement);

@@ -19,6 +19,9 @@ use crate::separation::{Evaluator, midplane_gap};
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
 
+/// Steps to the place of the least t on a valley. Each makes the error of t, which is as the square of that of η, a millionth.
+const TO_NEAREST: usize = 2;
+
 /// The interval of η of the patch at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slice {
@@ -308,15 +311,14 @@ impl<'a> Slicer<'a> {
 
     /// Returns η \[mm\] of the least gap over a valley at ξ; 0 without skew.
     ///
-    /// Method: over the rail's surface the least t lies on the valley where the normal meets it, δ cos α − t below the raised point. It is
-    /// found in `steps`, each of which makes the error of t, which is the square of that of η, a millionth.
-    pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64, steps: usize) -> f64 {
+    /// Method: over the rail's surface the least t lies where the normal meets the valley, which is δ cos α − t below the raised point.
+    pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let mut eta = self.valley(valley, xi);
         if let (Some(in_valleys), Some(level), Some(valley)) = (&self.in_valleys, &mut self.normal, valley) {
-            let steps = if in_valleys.valleys.is_turned() { steps } else { 0 };
+            let steps = if in_valleys.valleys.is_turned() { TO_NEAREST } else { 0 };
             for _ in 0..steps {
-                let Some(along) = level.along_normal(xi, eta) else { break };
-                eta = in_valleys.valleys.spot(valley, along).eta;
+                let Some(met) = level.met_by_normal(xi, eta) else { break };
+                eta = in_valleys.valleys.spot(valley, met).eta;
             }
         }
         eta

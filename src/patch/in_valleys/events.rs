@@ -1,4 +1,4 @@
-//! Finds the ξ at which the intervals of a patch under a skewed wheel begin, end, divide or join.
+//! Finds the ξ at which the intervals of a patch that is found from valleys begin, end, divide or join.
 
 use super::monotone::{along_surface, monotone};
 use crate::numerics::interval::Interval;
@@ -63,17 +63,22 @@ pub(in crate::patch) fn events(outline: &mut Outline<'_>, range: Interval) -> Ev
             }
         }
         if is_valley {
-            level.sort_by(|a, b| a.low.total_cmp(&b.low));
-            level.dedup();
-            let mut turns: Vec<f64> = level.iter().flat_map(|piece| piece.ends()).collect();
-            level.iter().for_each(|&piece| outline.turns_over_rail(crease, piece, &mut turns));
-            turns.sort_by(f64::total_cmp);
-            turns.dedup();
             let turn = |xi: f64| Turn { valley: Some(crease), xi, depth: f64::NAN };
-            events.turns.extend(turns.into_iter().map(turn));
+            events.turns.extend(turns_within(outline, crease, &mut level).into_iter().map(turn));
         }
     }
     events
+}
+
+/// Returns the σ at which the least t over a valley may turn, and the ends of the ranges of σ in which they are sought \[mm\].
+fn turns_within(outline: &mut Outline<'_>, valley: usize, level: &mut Vec<Interval>) -> Vec<f64> {
+    level.sort_by(|a, b| a.low.total_cmp(&b.low));
+    level.dedup();
+    let mut turns: Vec<f64> = level.iter().flat_map(|range| range.ends()).collect();
+    level.iter().for_each(|&range| outline.turns_over_rail(valley, range, &mut turns));
+    turns.sort_by(f64::total_cmp);
+    turns.dedup();
+    turns
 }
 
 /// Adds the event at which s over a valley or ridge passes δ in a stretch over which it is monotone.

@@ -1,5 +1,5 @@
-//! Finds the bands of a patch under a skewed wheel, where a line of constant ξ may meet the patch in several
-//! intervals of η.
+//! Finds the bands of a patch under a skewed wheel, or over the rail's surface, where a line of constant ξ or σ may meet the patch in
+//! several intervals of η.
 //!
 //! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or passes s = δ, or
 //! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.

@@ -41,7 +41,6 @@ pub(crate) fn monotone(
     matters: impl Fn(Interval) -> bool,
     intervals: &mut Vec<Interval>,
 ) {
-    let mut turns = Vec::new();
     for leg in &valleys.creases[crease].legs {
         let wheel = valleys.slopes(leg);
         let over = xi.cut(leg.xi.into());
@@ -55,15 +54,9 @@ pub(crate) fn monotone(
             }
             let (slopes, upright) = (wheel + -bounds, bounds.magnitude().is_infinite());
             let stretch = RailStretch { valleys, leg, rail: &rail.branches[piece.branch], slopes, upright };
-            turns.clear();
+            let mut turns = Vec::new();
             if stretch.turns(over, &matters, &mut turns) {
-                turns.retain(|turn| over.surrounds(*turn));
-                turns.sort_by(f64::total_cmp);
-                let mut left = over.low;
-                for &turn in turns.iter().chain([&over.high]) {
-                    intervals.push(Interval::new(left, turn));
-                    left = turn;
-                }
+                intervals.extend(over.parts(turns));
             }
         }
     }
@@ -94,7 +87,8 @@ pub(super) fn along_surface(
             let most = slopes.magnitude() * xi.width();
             let heights = Interval::between(ends[0], ends[1]).grown(most);
             let gap = heights + -piece.bounds[1];
-            if if is_valley { gap.low > 0.0 } else { gap.high < 0.0 } {
+            let matters = if is_valley { gap.low <= 0.0 } else { gap.high >= 0.0 };
+            if !matters {
                 continue;
             }
             let growth = rise + -(slopes * run);
@@ -108,13 +102,11 @@ pub(super) fn along_surface(
                 direction.y * run - direction.x * rise
             };
             for over in raised.runs(piece).into_iter().filter_map(|run| raised.over(run, legs)) {
-                let mut ends = vec![over.low];
+                let mut turns = Vec::new();
                 if may_turn {
-                    sign_changes(|sigma: &Lanes| sigma.map(angle), over, ANGLE_NOISE, &mut ends);
-                    ends.retain(|end| *end == over.low || over.surrounds(*end));
+                    sign_changes(|sigma: &Lanes| sigma.map(angle), over, ANGLE_NOISE, &mut turns);
                 }
-                ends.push(over.high);
-                intervals.extend(ends.windows(2).map(|pair| Interval::new(pair[0], pair[1])));
+                intervals.extend(over.parts(turns));
             }
         }
     }

@@ -54,7 +54,7 @@ pub(super) fn table(run: &Run, written: &[WrittenPart]) -> String {
         if merged > 0 {
             let places = counted(merged, "further place");
             out += &format!(
-                "{}: {places} of contact lie in the same patch; this one folder holds all of it\n",
+                "{}: the same patch holds {places} of contact; this one folder has all of it\n",
                 part.site.name()
             );
         }
