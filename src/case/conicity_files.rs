@@ -10,7 +10,7 @@ use super::conicity_noise::{UNCERTAIN, Uncertainty};
 use super::curves::curves;
 use super::doubts::DoubtSet;
 use super::input::{Arrangement, Case};
-use super::sweep_view::{page_of, swept};
+use super::sweep_view::{Shown, page_of, swept};
 use crate::error::{Error, Result};
 use crate::export::{
     CurvesMap, CurvesPanel, CurvesPicture, PageFigure, PageMap, PlottedCurve, SEPARATOR, SweepPage,
@@ -138,8 +138,8 @@ pub fn conicity_page(case: &Case, report: &ConicityReport) -> Result<SweepPage> 
         amplitudes: map.v.clone(),
         values: map.values.concat(),
     });
-    let shown = swept(case, wheelset(case)?, &columns, report.function("lateral_mm"));
-    let mut page = page_of(&shown, picture);
+    let of_sweep = swept(case, wheelset(case)?, &columns, report.function("lateral_mm"));
+    let mut page = page_of(&Shown { table: "conicity", ..of_sweep }, picture);
     page.map = map;
     page.figures = figures(report);
     page.findings = report.findings.clone();

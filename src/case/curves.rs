@@ -4,6 +4,7 @@ use super::columns::SweepColumns;
 use crate::error::{Error, Result};
 use crate::export::{CurvesPanel, CurvesPicture, PlottedCurve, SEPARATOR, jumps};
 use crate::numerics::interval::Interval;
+use crate::search::AMPLITUDE;
 
 /// Most positions that are drawn: more than a page has pixels.
 pub const MOST_DRAWN: usize = 2000;
@@ -74,9 +75,9 @@ pub fn curves(columns: &SweepColumns, lateral: &[f64], title: &str, about: &str)
         quantity(title, axis, curves, false)
     });
     let conicity = lowest.values(true, "conicity");
-    let at_usual = conicity_at(lateral, &conicity, USUAL_AMPLITUDE);
+    let at_usual = conicity_at(lateral, &conicity, AMPLITUDE);
     let conicity = at_usual.map_or_else(String::new, |conicity| {
-        format!("{SEPARATOR}equivalent conicity {conicity:.3} at {USUAL_AMPLITUDE} mm")
+        format!("{SEPARATOR}equivalent conicity {conicity:.3} at {AMPLITUDE} mm")
     });
     Ok(CurvesPicture {
         title: title.into(),
@@ -124,9 +125,6 @@ pub(super) fn over(
         map: None,
     })
 }
-
-/// Amplitude at which the equivalent conicity is usually named \[mm\].
-const USUAL_AMPLITUDE: f64 = 3.0;
 
 /// Contact angles beyond this \[rad\] are those of flanges and their roots: 30°.
 const FLANGE: f64 = 0.52;

@@ -32,7 +32,7 @@ pub(super) struct Shown<'a> {
     pub stands: &'a dyn Fn(f64) -> [f64; 2],
     /// Normal force of the region of each contact \[N\]; `None` where none is known.
     pub loads: Option<&'a [f64]>,
-    /// Name of the table that holds the exact numbers: "sweep" or "march".
+    /// Name of the table that holds the exact numbers: "sweep", "march" or "conicity".
     pub table: &'a str,
 }
 

@@ -12,12 +12,9 @@ use crate::numerics::bodies::Bodies;
 use crate::numerics::interval::Interval;
 use crate::scene;
 use crate::search::{
-    Conicity, NoConicity, ONE_CONTACT, Position, Selection, Sweep, TrackSide, WheelsetOnTrack,
+    AMPLITUDE, Conicity, Equivalent, NONLINEARITY, ONE_CONTACT, Position, Selection, Sweep, TrackSide,
+    WheelsetOnTrack, nonlinearity,
 };
-
-/// Amplitudes \[mm\] of the conicity, and of those whose slope is the nonlinearity.
-const AMPLITUDE: f64 = 3.0;
-const SLOPE: [f64; 2] = [2.0, 4.0];
 
 /// Positions to either side of the centre, and their distance \[mm\]: to 8 mm, where flanges touch.
 pub(super) const POSITIONS: i32 = 32;
@@ -164,19 +161,22 @@ impl FoundContact {
     fn of(fleet: &Listed, case: &Case) -> Result<Self> {
         let (system, template) = wheelset(case)?;
         let mut findings = own_warnings(fleet, case);
-        let conicity = Conicity::new(system, SLOPE[1], template.roll)?;
-        let at = |amplitude: f64| conicity.at(amplitude);
-        let [usual, low, high] = [AMPLITUDE, SLOPE[0], SLOPE[1]].map(at);
-        for (found, amplitude) in [(usual, AMPLITUDE), (low, SLOPE[0]), (high, SLOPE[1])] {
+        let [nearest, farthest] = NONLINEARITY;
+        let conicity = Conicity::new(system, farthest, template.roll)?;
+        let found = [AMPLITUDE, nearest, farthest].map(|amplitude| (amplitude, conicity.at(amplitude)));
+        for (amplitude, found) in found {
             findings.extend(found.err().map(|why| format!("no conicity at {amplitude} mm: {why}")));
         }
-        let value = |found: std::result::Result<crate::search::Equivalent, NoConicity>| {
-            found.ok().map(|found| found.conicity)
-        };
-        let slope = value(low).zip(value(high)).map(|(low, high)| (high - low) / (SLOPE[1] - SLOPE[0]));
+        let [usual, low, high] = found.map(|(_, found)| found.ok());
+        let value = |found: Option<Equivalent>| found.map(|found| found.conicity);
         let bands = Bands::of(system, &template)?;
-        let mut values =
-            vec![value(usual), usual.ok().map(|found| found.error), value(low), value(high), slope];
+        let mut values = vec![
+            value(usual),
+            usual.map(|found| found.error),
+            value(low),
+            value(high),
+            nonlinearity(&conicity).ok(),
+        ];
         let ends = bands.reach.into_iter().flatten().flat_map(Interval::ends);
         values.extend(ends.map(|x| Some(x).filter(|x| x.is_finite())));
         Ok(Self { values, findings, touched: bands.touched })

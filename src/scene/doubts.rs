@@ -3,6 +3,7 @@
 use super::data::{RollData, Scene};
 use super::profile_data::{ProfileData, Rotation};
 use super::side_data::SideData;
+use super::varying::list_of;
 use crate::case::{Doubt, Landmarks, Profiles, SideLandmarks, SideProfiles, usual};
 use crate::profile::Side;
 use crate::profile::standards::is_built_in;
@@ -128,9 +129,8 @@ fn kinks(scene: &Scene, side: Option<TrackSide>, own: &SideProfiles, out: &mut V
     let bodies = [(Side::Rail, "rail", own.pair.rail()), (Side::Wheel, "wheel", own.pair.wheel())];
     for (k, (body, name, profile)) in bodies.into_iter().enumerate() {
         // Kinks of built-in and measured profiles and of slices come from their sources: they are no slips of a drawing.
-        let sections = own.varying.as_ref().filter(|_| data[k].file.is_some());
-        let section = sections.is_some_and(|varying| varying.side() == body);
-        if !section && !is_built_in(profile, body) && own.measured.both()[k].is_none() {
+        let of_slices = list_of(data[k], body).is_some();
+        if !of_slices && !is_built_in(profile, body) && own.measured.both()[k].is_none() {
             out.extend(usual::kinks(&own_place(side, name), profile));
         }
     }

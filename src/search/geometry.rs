@@ -14,7 +14,7 @@ use crate::profile::trace;
 pub const AMPLITUDE: f64 = 3.0;
 
 /// Amplitudes \[mm\] between which the nonlinearity parameter is a slope.
-const NONLINEARITY: [f64; 2] = [2.0, 4.0];
+pub const NONLINEARITY: [f64; 2] = [2.0, 4.0];
 
 /// Step of the displacements \[mm\] over which contact bands are found: the widest of EN 15302.
 const STEP: f64 = 0.1;

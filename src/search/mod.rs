@@ -52,8 +52,8 @@ mod walk;
 mod wheelset;
 
 pub use geometry::{
-    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, active_faces, gauge, geometry_over, key_figures,
-    nonlinearity,
+    AMPLITUDE, ContactBand, GeometryAt, KeyFigures, NONLINEARITY, active_faces, gauge, geometry_over,
+    key_figures, nonlinearity,
 };
 pub use lofted::{Cut, LoftedPair};
 pub use march::{Event, EventKind, March, Stop};

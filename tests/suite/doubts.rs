@@ -55,6 +55,22 @@ fn slips_are_spoken_of_with_their_number() -> Result<()> {
     Ok(())
 }
 
+#[test]
+fn a_wheel_drawn_in_a_file_has_its_kinks_named_with_a_flat_as_without() -> Result<()> {
+    let folder = tempfile::tempdir().unwrap();
+    let line =
+        |from: [f64; 2], to: [f64; 2]| format!("[[segments]]\nline = {{ from = {from:?}, to = {to:?} }}\n");
+    let chain = line([-60.0, 30.0], [0.0, 0.0]) + &line([0.0, 0.0], [60.0, 3.0]);
+    std::fs::write(folder.path().join("drawn.toml"), chain).unwrap();
+    for flat in ["", "flat = { length = 40.0, angle = 0.0 }"] {
+        let text = pair("", flat, "[contact]\noffset = 0.0\n[patch]\napproach = 0.05");
+        let found = warnings(&text.replace("profile = \"S1002\"", "file = \"drawn.toml\""), folder.path())?;
+        let expected = "wheel: segments 1 and 2 meet at x = 0.000 mm with a kink of";
+        assert!(found.iter().any(|warning| warning.contains(expected)), "{flat}: {found:?}");
+    }
+    Ok(())
+}
+
 /// A wheelset of S1002 wheels on 60E1 rails with other numbers.
 fn wheelset(was: &str, is: &str) -> String {
     let track = "[track]\ngauge = 1435.0\ngauge_height = 14.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\n\
