@@ -1,4 +1,4 @@
-//! Tells the program which compiler builds it, and whether for a release, for `wheelrail report`.
+//! Tells the program which compiler builds it, for `wheelrail report`.
 
 use std::process::Command;
 
@@ -8,7 +8,5 @@ fn main() {
     let output = Command::new(rustc).arg("--version").output();
     let version = output.map(|o| String::from_utf8_lossy(&o.stdout).trim().to_string()).unwrap_or_default();
     let version = if version.is_empty() { "unknown compiler".into() } else { version };
-    let released = std::env::var("PROFILE").is_ok_and(|profile| profile == "release");
-    let profile = if released { "" } else { ", not a release: times mean nothing" };
-    println!("cargo:rustc-env=WHEELRAIL_COMPILER={version}{profile}");
+    println!("cargo:rustc-env=WHEELRAIL_RUSTC={version}");
 }

@@ -161,9 +161,9 @@ impl FoundContact {
     fn of(fleet: &Listed, case: &Case) -> Result<Self> {
         let (system, template) = wheelset(case)?;
         let mut findings = own_warnings(fleet, case);
-        let [nearest, farthest] = NONLINEARITY;
-        let conicity = Conicity::new(system, farthest, template.roll)?;
-        let found = [AMPLITUDE, nearest, farthest].map(|amplitude| (amplitude, conicity.at(amplitude)));
+        let [least, most] = NONLINEARITY;
+        let conicity = Conicity::new(system, most, template.roll)?;
+        let found = [AMPLITUDE, least, most].map(|amplitude| (amplitude, conicity.at(amplitude)));
         for (amplitude, found) in found {
             findings.extend(found.err().map(|why| format!("no conicity at {amplitude} mm: {why}")));
         }

@@ -13,7 +13,7 @@ use crate::profile::trace;
 /// Amplitude \[mm\] at which the equivalent conicity is stated.
 pub const AMPLITUDE: f64 = 3.0;
 
-/// Amplitudes \[mm\] between which the nonlinearity parameter is a slope.
+/// Amplitudes \[mm\] between which the nonlinearity parameter of EN 15302 is the slope of the equivalent conicity.
 pub const NONLINEARITY: [f64; 2] = [2.0, 4.0];
 
 /// Step of the displacements \[mm\] over which contact bands are found: the widest of EN 15302.

@@ -6,7 +6,7 @@ use super::asked::Asked;
 use super::breaks::{Break, BreakRow, HOP, divide, laterals};
 use super::cell::{BREAK, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 use super::curve::{Curve, POWERS, YAW_POWERS, between, node, share};
-use super::quantity::{MOST, QuantityValues, TableQuantity};
+use super::quantity::{MOST, Needs, QuantityValues, TableQuantity};
 use super::state::{Sampler, State};
 use crate::error::{Result, in_order};
 use crate::numerics::interval::Interval;
@@ -211,6 +211,7 @@ impl FittedCell {
         let nodes: Vec<Powers> = samples.iter().zip(rows).step_by(2).map(node).collect();
         let mut coefficients = if nodes.len() < YAW_COEFFICIENTS { nodes } else { over_yaw(&nodes) };
         for (q, quantity) in quantities.iter().enumerate().filter(|(_, quantity)| !exists(&cell, quantity)) {
+            debug_assert!(quantity.needs != Needs::Contact);
             coefficients.iter_mut().flatten().for_each(|row| row[q] = f64::NAN);
         }
         let mut fitted = Self { cell, coefficients, errors: [0.0; MOST] };

@@ -44,7 +44,7 @@ pub(crate) fn fleet<'py>(
     out: PathBuf,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let warnings = watched(py, progress.as_ref(), |watch| {
+    let warnings = watched(py, progress.as_ref().map(|shown| (shown, "pairs")), |watch| {
         let fleet = listed(&path, &wheels, rails.as_deref())?;
         watch.at(0, fleet.pairs());
         fleet.run(&out, &|done, all| {

@@ -85,17 +85,17 @@ fn fault(panic: &(dyn Any + Send)) -> PyErr {
 }
 
 /// Does work that often calls [`Watch::go_on`], so that Ctrl-C ends it within 0.2 s. `progress` is as `wheelrail._progress.shown`
-/// takes it; its bar counts positions.
+/// takes it, with the name of what its bar counts.
 ///
 /// # Errors
 /// Those of the work and of `progress`; KeyboardInterrupt.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
-    progress: Option<&Py<PyAny>>,
+    progress: Option<(&Py<PyAny>, &str)>,
     work: impl FnOnce(&Watch) -> Result<T> + Send,
 ) -> PyResult<T> {
-    let Some(progress) = progress else { return told(py, None, work) };
-    let shown = py.import("wheelrail._progress")?.call_method1("shown", (progress, "positions"))?;
+    let Some((progress, counted)) = progress else { return told(py, None, work) };
+    let shown = py.import("wheelrail._progress")?.call_method1("shown", (progress, counted))?;
     let call: Option<Py<PyAny>> = shown.call_method0("__enter__")?.extract()?;
     let result = told(py, call.as_ref(), work);
     // Its own exceptions are those of `progress`, which the result has.

@@ -71,7 +71,8 @@ pub(crate) fn march<'py>(
             return Err(exception(Error::new("march", found, "one of the two", "give places or pitches")));
         }
     };
-    let (rows, events, warnings) = watched(py, progress.as_ref(), |watch| {
+    let counted = progress.as_ref().map(|shown| (shown, "positions"));
+    let (rows, events, warnings) = watched(py, counted, |watch| {
         let scene = scene::load(&path)?;
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
         let case = scene::march(&scene, folder)?;

@@ -36,7 +36,7 @@ pub(crate) fn sweep<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let AskedOfSweep { within, conicity, ellipses } = asked;
     let count = positions.count;
-    let (columns, tally) = watched(py, progress, |watch| {
+    let (columns, tally) = watched(py, progress.map(|shown| (shown, "positions")), |watch| {
         watch.at(0, positions.count);
         let positions = listed(&positions, watch)?;
         let conicity = if conicity { conicity_over(system, &positions, &mut |_, _| {})? } else { None };

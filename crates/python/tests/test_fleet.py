@@ -49,6 +49,12 @@ def test_a_fleet_is_a_table_with_a_row_for_every_pair(folder: Path) -> None:
     assert float(new["conicity"]) == pytest.approx(wheelset.conicity(3.0), rel=2e-4)
 
 
+def test_the_bar_of_a_fleet_counts_pairs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    need("tqdm")
+    wr.fleet(folder / "scene.toml", folder / "wheels.csv", "60E1", out=folder / "out", progress=True)
+    assert "3.00/3.00" in (bar := capsys.readouterr().err) and " pairs" in bar
+
+
 def test_workers_compute_the_same_fleet(folder: Path) -> None:
     need("distributed", "pyarrow")
     from distributed import Client, LocalCluster

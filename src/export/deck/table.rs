@@ -100,6 +100,7 @@ fn comments(table: &ContactTable, title: &str) -> Vec<String> {
         format!("approach x {TOLERANCE_LENGTH} mm / radius, pressures x 1000 N/mm2 / {TOLERANCE_LENGTH} mm"),
     ];
     let grammar: &[&str] = if about.over_yaw() { &OVER_YAW } else { &UNDER_ONE_YAW };
+    debug_assert!(table.quantities().iter().all(|quantity| quantity.name.len() <= 18));
     let grammar = grammar.iter().map(|line| (*line).to_string());
     before.into_iter().chain(grammar).chain(behind).chain(off).map(|line| plain(&line)).collect()
 }

@@ -19,7 +19,7 @@ pub(super) fn origin() -> PageOrigin {
         ("command", command()),
         ("version", format!("wheelrail {}", env!("CARGO_PKG_VERSION"))),
         ("commit", commit()),
-        ("compiler", env!("WHEELRAIL_COMPILER").into()),
+        ("compiler", compiler()),
         ("system", system()),
         ("processor", processor()),
         ("memory", field("/proc/meminfo", "MemTotal")),
@@ -31,6 +31,11 @@ pub(super) fn origin() -> PageOrigin {
 fn command() -> String {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     format!("wheelrail {}", arguments.join(" "))
+}
+
+fn compiler() -> String {
+    let checks = if cfg!(debug_assertions) { ", with debug assertions: times mean nothing" } else { "" };
+    format!("{}{checks}", env!("WHEELRAIL_RUSTC"))
 }
 
 /// Returns the commit of the folder in which the program was built, if that folder still exists.
