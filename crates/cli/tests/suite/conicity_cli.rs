@@ -105,7 +105,11 @@ fn pictures_and_pages_are_written_and_findings_are_said() {
     }
     assert!(!svg.contains("NaN"));
     let html = fs::read_to_string(&page).unwrap();
-    assert!(html.contains("nonlinearity_per_mm") && html.contains("no contact on both sides"));
+    assert!(
+        html.contains("in the table of the conicity")
+            && html.contains("nonlinearity_per_mm")
+            && html.contains("no contact on both sides")
+    );
     assert!(fs::read_to_string(&out).unwrap().starts_with("lateral_mm,roll_rad,delta_r_mm,conicity,"));
 }
 
