@@ -182,10 +182,11 @@ impl Interval {
         [Self::new(self.low, at), Self::new(at, self.high)]
     }
 
-    /// Gives the parts between the ends and the places inside, ascending. `places` may hold others and be in any order.
+    /// Gives the parts between the ends and the places inside, ascending. `places` may hold others, some twice, and be in any order.
     pub fn parts(self, mut places: Vec<f64>) -> impl Iterator<Item = Self> {
         places.retain(|place| self.surrounds(*place));
         places.sort_by(f64::total_cmp);
+        places.dedup();
         let mut low = self.low;
         places
             .into_iter()

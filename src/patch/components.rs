@@ -1,6 +1,7 @@
 //! Finds the connected components of the patch {s < δ} inside a window, and the closed loops around each.
 
 use super::band::{Band, Turn};
+use super::by_roots::turns::LeastGap;
 use super::corners;
 use super::in_valleys::lanes;
 use super::loops;
@@ -98,7 +99,7 @@ impl Patch {
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew a part is missed
     /// only between two turns of s along a valley between which the surfaces are parallel to 1e-13 (see the docs on numerics); on a roller,
-    /// only between two turns within 1/512 of the range of ξ.
+    /// only where it is shallower than 1e-12 mm, and beside a step or an upright place of a body within 1/512 of the range of ξ.
     /// Where a body varies a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
     /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
     /// the boundary is interpolated to 1e-9 of its width.
@@ -110,9 +111,9 @@ impl Patch {
     /// says ξ it is σ, and s is t + δ (1 − cos α). Area \[mm²\] and perimeter \[mm\] are those on the rail's surface.
     ///
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
-    /// in [`Self::new`] with skew, on a roller between two turns within 1/512 of the searched σ. On a rail the patch is where the point of
-    /// the rail, raised by δ cos α along its normal, lies in the wheel. Where the wheel's surface ends or steps within the patch, that is
-    /// up to δ |sin α| along ξ beside where its points along the normals end.
+    /// in [`Self::new`] with skew or on a roller. On a rail the patch is where the point of the rail, raised by δ cos α along its normal,
+    /// lies in the wheel. Where the wheel's surface ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points
+    /// along the normals end.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }
@@ -321,7 +322,9 @@ impl BandGroup {
             // C is the first candidate, so that it is chosen if s is 0 at several because ξ² underflows.
             places.extend(holds(0.0).then_some(0.0));
             places.extend(band.xi.ends());
-            let cut = outline.window.eta.ends().into_iter().any(f64::is_finite) && !band.valleys.is_empty();
+            let window = outline.window.eta;
+            places.extend(outline.slicer.least_gap(band.xi, window).and_then(LeastGap::least_of_all));
+            let cut = window.ends().into_iter().any(f64::is_finite) && !band.valleys.is_empty();
             places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
             for xi in places {
                 for &valley in band.valleys_at(xi) {

@@ -2,6 +2,7 @@
 //! plane of a rail.
 
 use super::band::{Band, Turn, steps};
+use super::by_roots::turns::LeastGap;
 use super::in_valleys::slicer::between;
 use super::outline::{End, Outline};
 use super::window::Window;
@@ -10,10 +11,6 @@ use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::turning_points;
 use crate::placement::Placement;
-
-/// Number of intervals in which turns of the depth are sought over a roller's surface, and over its tangent plane if the lowest places along η
-/// are not in its midplane. A part is missed only between two turns within one of them.
-const WINDOW_INTERVALS: usize = 512;
 
 /// Returns the bands by ascending ξ, and the places at which s may be least.
 ///
@@ -26,13 +23,13 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
     if a.is_nan() || b.is_nan() || a >= b {
         return (Vec::new(), Vec::new());
     }
-    let turns = turns_of_depth(outline, over);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     let mut torn: Vec<f64> = Vec::new();
     if !outline.slicer.is_over_rail() {
         torn.extend(steps(&placement.rail().section, over, extent));
         torn.extend(steps(&placement.wheel().section, over, extent));
     }
+    let turns = turns_of_depth(outline, over, &torn);
     let mut bands = Vec::new();
     let mut begun: Option<(f64, Option<End>)> = None;
     let at = |outline: &mut Outline<'_>, xi: f64| Turn { valley: None, xi, depth: outline.depth(None, xi) };
@@ -82,11 +79,9 @@ pub(super) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn>) {
 pub(crate) fn least_on_roller(placement: &Placement) -> Option<[f64; 3]> {
     let reach = placement.rail().section.reach()?;
     let mut outline = Outline::new(placement, 0.0, &Window::UNBOUNDED, Reference::Plane);
-    // C comes first: rounding may put a turn next to it.
-    let places = std::iter::once(0.0).chain(turns_of_depth(&mut outline, reach));
-    let found: Vec<_> =
-        places.map(|xi| outline.lowest(None, xi)).filter(|least| !least[0].is_nan()).collect();
-    found.into_iter().min_by(|p, q| p[0].total_cmp(&q[0]))
+    let slices = outline.slicer.by_roots.as_mut()?;
+    let xi = LeastGap { slices, over: reach, window: Interval::ALL }.least_of_all()?;
+    Some(outline.lowest(None, xi))
 }
 
 fn closed(
@@ -105,63 +100,20 @@ fn closed(
     Band::new(Interval::new(from, to), [begin, end], sides, outline.window.eta)
 }
 
-/// Returns both ends of a range of ξ \[mm\], and all ξ between them where the depth may turn: joints and stationary points. The
-/// depth is monotone between neighbours, unless it turns twice within one of [`WINDOW_INTERVALS`].
-fn turns_of_depth(outline: &mut Outline<'_>, over: Interval) -> Vec<f64> {
-    let [a, b] = over.ends();
-    let over_rail = outline.slicer.is_over_rail();
-    let mut points = if over_rail {
-        let c = Some(0.0).filter(|c| a < *c && *c < b);
-        [a, b].into_iter().chain(c).chain(outline.slicer.joints(over)).collect()
-    } else {
-        turning_points(outline.slicer.placement(), a, b)
-    };
-    let placement = outline.slicer.placement();
-    let (skewed, on_roller) = (placement.skew() != 0.0, placement.under().is_some());
-    if over_rail || (on_roller && (skewed || outline.floor(None, a) != 0.0)) {
-        return sampled_turns(outline, points, over);
-    } else {
-        let floor = outline.floor(None, a);
-        if floor == 0.0 {
-            return points;
-        }
+/// Returns both ends of a range of ξ \[mm\], and so many places between them, ascending, that the depth passes 0 at most once from one to
+/// the next: all at which it may turn or, next to `torn` ones, as many as prove it.
+fn turns_of_depth(outline: &mut Outline<'_>, over: Interval, torn: &[f64]) -> Vec<f64> {
+    if let Some(least) = outline.slicer.least_gap(over, outline.window.eta) {
+        return least.turns(torn.to_vec());
+    }
+    let mut points = turning_points(outline.slicer.placement(), over.low, over.high);
+    let floor = outline.floor(None, over.low);
+    if floor != 0.0 {
         points.extend(outline.turns_along(floor, over));
+        points.sort_by(f64::total_cmp);
+        points.dedup();
     }
-    points.sort_by(f64::total_cmp);
-    points.dedup();
     points
-}
-
-/// Returns both ends of a range of ξ \[mm\], and between them known places, equal steps and the turns of the depth between these,
-/// ascending. Places outside the patch whose neighbours are outside, too, are left out.
-fn sampled_turns(outline: &mut Outline<'_>, mut places: Vec<f64>, over: Interval) -> Vec<f64> {
-    places.extend((1..WINDOW_INTERVALS).map(|k| over.step(k, WINDOW_INTERVALS)));
-    places.sort_by(f64::total_cmp);
-    places.dedup();
-    // The midplane has a surface wherever a slice has one.
-    let missing = outline.window.eta.contains(0.0);
-    let by_roots = outline.slicer.by_roots.as_mut();
-    let apart: Vec<bool> = match by_roots {
-        Some(slices) => places.iter().map(|&xi| slices.is_apart(xi).unwrap_or(missing)).collect(),
-        None => vec![false; places.len()],
-    };
-    // At the lowest place along η, the slope of the gap has no part along η.
-    let mut slope = |xi: f64| {
-        let floor = outline.floor(None, xi);
-        outline.slicer.gradient(xi, floor)[0]
-    };
-    let mut turns = vec![over.low];
-    for (pair, apart) in places.windows(2).zip(apart.windows(2)) {
-        if apart == [true; 2] {
-            continue;
-        }
-        turns.push(pair[0]);
-        turns.extend(bracketed(&mut slope, pair[0].next_up(), pair[1]));
-        turns.push(pair[1]);
-    }
-    turns.push(over.high);
-    turns.dedup();
-    turns
 }
 
 /// Returns the end of the patch between p and q, one of which is inside the patch, and what bounds it there.

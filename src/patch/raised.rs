@@ -10,7 +10,7 @@ use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::roots::bracketed;
 use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
-use crate::profile::{Branch, BranchShape, Section};
+use crate::profile::Section;
 use crate::separation::{Relief, ReliefPoint};
 
 /// Rounding of the direction of the raised curve.
@@ -198,13 +198,13 @@ impl<'a> Raised<'a> {
         let (rail, approach) = (self.rail(), self.approach);
         let piece = &rail.pieces[index];
         let branch = &rail.branches[piece.branch];
-        let (slopes, [_, seconds]) = (rail.slopes(index), branch.derivative_bounds(piece.xi));
+        let (slopes, derivatives) = (rail.slopes(index), branch.derivative_bounds(piece.xi));
         // Between its ends a curve leaves its chord by no more than ζ″ l²/8.
-        let bulge = seconds.magnitude() * piece.xi.width().powi(2) / 8.0;
+        let bulge = derivatives[1].magnitude() * piece.xi.width().powi(2) / 8.0;
         let heights = Interval::between(piece.heights[0], piece.heights[1]).grown(bulge);
         let bounds = [piece.xi.grown(approach.abs() / 2.0), heights.hull(heights + approach)];
         // These bounds hold for all curves along which t + δ (1 − cos α) is constant and |t| at most δ; the raised curve is one of them.
-        let turned = 2.0 * approach.abs() * most_curved(branch, seconds);
+        let turned = 2.0 * approach.abs() * branch.curvature_bounds(derivatives).magnitude();
         let flattest = slopes.nearest(0.0);
         let cosines = Interval::between(cosine(slopes.magnitude()), cosine(flattest));
         let sines =
@@ -252,14 +252,6 @@ impl<'a> Raised<'a> {
 /// Returns the cosine of the angle of a slope.
 fn cosine(slope: f64) -> f64 {
     1f64.hypot(slope).recip()
-}
-
-/// Returns a bound of the curvature of a branch \[1/mm\] from bounds of ζ″, beyond which it nowhere goes.
-fn most_curved(branch: &Branch, seconds: Interval) -> f64 {
-    match &branch.shape {
-        BranchShape::Arc(arc) => arc.curvature.abs(),
-        BranchShape::Polynomial(_) => seconds.magnitude(),
-    }
 }
 
 #[cfg(test)]

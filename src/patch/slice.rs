@@ -4,6 +4,7 @@
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
 use super::by_roots::ByRoots;
+use super::by_roots::turns::LeastGap;
 use super::in_valleys::slicer::{Edge, InValleys, STEP_ROUNDINGS, between, on_surface};
 use super::level::Level;
 use super::raised::RaisedLanes;
@@ -80,7 +81,7 @@ impl<'a> Slicer<'a> {
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            by_roots: (on_roller && !varies).then(|| ByRoots::new(placement, approach, level())),
+            by_roots: (on_roller && !varies).then(|| ByRoots::new(placement, approach, level())).flatten(),
             in_valleys: in_valleys.then(|| InValleys::new(placement, approach, surface)),
             varying: varies.then(|| Varying::new(placement, approach, level())),
             normal,
@@ -107,6 +108,13 @@ impl<'a> Slicer<'a> {
             // A skewed wheel lies over another part of a roller.
             None => self.placement.rail().section.reach(),
         }
+    }
+
+    /// Returns the least gaps of a range of ξ inside one of η \[mm\], on a roller; `None` where they are those of two profiles in the midplane,
+    /// whose turns have formulas.
+    pub(super) fn least_gap(&mut self, over: Interval, window: Interval) -> Option<LeastGap<'_, 'a>> {
+        let slices = self.by_roots.as_mut()?;
+        (!slices.in_midplane(window)).then_some(LeastGap { slices, over, window })
     }
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.

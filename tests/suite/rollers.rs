@@ -266,3 +266,31 @@ fn both_halves_of_a_patch_make_it_up() {
         assert!((sum / whole - 1.0).abs() < 1e-9, "{contact:?}: {sum} instead of {whole}");
     }
 }
+
+/// A ridge of the roller carries beside the rest of its crown, 40 to 80 µm wide.
+#[test]
+fn a_thin_part_on_a_roller_is_found_wherever_it_lies() {
+    let tread = arc(100.0, Half::Lower);
+    for k in 0..7 {
+        let at = 3.9 + 0.029 * f64::from(k);
+        let corners = [[-40.0, 0.0], [at - 0.2, 0.0], [at, 0.02], [at + 0.2, 0.0], [40.0, 0.0]];
+        let sides = corners.windows(2).map(|ends| Segment::arc(Arc::line(ends[0], ends[1]).unwrap()));
+        let crown = Profile::new("ridge", "", sides.collect()).unwrap();
+        let least = off(100.0, at) - 0.02;
+        for skew in [0.0, -0.004, 0.024, 0.1] {
+            let placement = placed(crown.clone(), tread.clone(), [350.0, 460.0], skew);
+            for (find, approach) in
+                [(Patch::new as fn(_, _, _) -> _, least + 0.002), (Patch::over_rail, least + 0.0025)]
+            {
+                let patch: Patch = find(&placement, approach, &Window::UNBOUNDED);
+                let [tread, ridge] = &patch.components[..] else {
+                    panic!("{at}, {skew}: {} parts", patch.components.len())
+                };
+                assert!(tread.xi.contains(0.0) && !tread.xi.meets(ridge.xi), "{at}, {skew}");
+                assert!(ridge.xi.width() < 0.1, "{at}, {skew}: {:?}", ridge.xi);
+                let deepest = ridge.deepest;
+                assert!((deepest[0] - least).abs() < 2e-3, "{at}, {skew}: {deepest:?}");
+            }
+        }
+    }
+}

@@ -24,7 +24,7 @@ pub(in crate::patch) struct Turned<'a> {
     /// R, the axle distance of C \[mm\].
     pub(super) axle: f64,
     /// The rotation by θ, from the wheel's contact frame to its profile's axes.
-    tilt: UnitComplex<f64>,
+    pub(super) tilt: UnitComplex<f64>,
     /// The rotation by χ, from the wheel's directions in the tangent plane to ξ and η.
     pub(super) skew: UnitComplex<f64>,
 }

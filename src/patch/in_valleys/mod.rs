@@ -7,4 +7,5 @@ pub(super) mod lanes;
 pub(crate) mod monotone;
 mod path;
 pub(super) mod slicer;
+pub(super) mod tilts;
 pub(crate) mod valleys;

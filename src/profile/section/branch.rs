@@ -436,6 +436,17 @@ impl Branch {
         }
     }
 
+    /// Computes bounds of ζ \[mm\] over a range of ξ \[mm\]: to rounding, no height lies beyond them.
+    pub(crate) fn height_bounds(&self, xi: Interval) -> Interval {
+        match &self.shape {
+            BranchShape::Arc(arc) => {
+                let flattest = xi.nearest(arc.anchor[0] - arc.sin * arc.radius);
+                Interval::around([xi.low, flattest, xi.high].map(|xi| arc.height(xi)))
+            }
+            BranchShape::Polynomial(p) => p.height_bounds(xi),
+        }
+    }
+
     /// Computes bounds of ζ′ and of ζ″ \[1/mm\] over a range of ξ \[mm\]: no value lies beyond them. They are infinite where the
     /// branch is vertical.
     pub fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
@@ -450,6 +461,16 @@ impl Branch {
             }
             BranchShape::Polynomial(p) => p.derivative_bounds(xi),
         }
+    }
+
+    /// Computes bounds of the curvature \[1/mm\], positive where the hollow side is up, from those of ζ′ and ζ″.
+    pub(crate) fn curvature_bounds(&self, [slopes, seconds]: [Interval; 2]) -> Interval {
+        if let BranchShape::Arc(arc) = &self.shape {
+            return Interval::of(arc.curvature);
+        }
+        let cosine = |slope: f64| 1f64.hypot(slope).recip();
+        let cosines = Interval::new(cosine(slopes.magnitude()), cosine(slopes.nearest(0.0)));
+        if cosines.low == 0.0 { Interval::ALL } else { seconds * cosines.map(|cosine| cosine.powi(3)) }
     }
 }
 

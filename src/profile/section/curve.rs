@@ -70,6 +70,11 @@ impl PolynomialBranch {
         (rates, if run.low <= 0.0 { Interval::ALL } else { rise.quotient(run) })
     }
 
+    /// Returns bounds of ζ \[mm\] over an interval of ξ \[mm\].
+    pub(super) fn height_bounds(&self, xi: Interval) -> Interval {
+        range(&self.zeta, self.parameters(xi))
+    }
+
     pub(super) fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
         let ([run, rise], slope) = self.rates(xi);
         if run.low <= 0.0 {

@@ -5,13 +5,17 @@
 //! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where a hollow of its profile has
 //! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles.
 
+mod bounds;
+pub(super) mod turns;
+
+use bounds::GapBounds;
+
 use super::in_valleys::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
 use super::level::Level;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::placement::{Body, Placement};
 use crate::profile::Section;
-use crate::separation::GapSlopes;
 
 /// Factor by which an end of a slice is sought farther out.
 const WIDER: f64 = 1.25;
@@ -31,8 +35,9 @@ pub(super) fn sections(placement: &Placement) -> [Option<&Section>; 2] {
 #[derive(Debug)]
 pub(super) struct ByRoots<'a> {
     pub(super) level: Level<'a>,
+    bounds: GapBounds<'a>,
     /// Whether the lowest place along η may be off η = 0.
-    pub(super) skewed: bool,
+    skewed: bool,
     /// Approach δ \[mm\].
     approach: f64,
     /// Coefficient \[1/mm\] of η² at C, without skew.
@@ -44,13 +49,20 @@ pub(super) struct ByRoots<'a> {
 }
 
 impl<'a> ByRoots<'a> {
-    /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
-    pub(super) fn new(placement: &Placement, approach: f64, level: Level<'a>) -> Self {
+    /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\]; `None` on a rail.
+    pub(super) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Option<Self> {
         let around = |body: &Body| body.section.frame.cos / body.axle_distance();
         let opening = 0.5 * (around(placement.wheel()) + around(placement.rail()));
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
         let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
-        Self { level, skewed: placement.skew() != 0.0, approach, opening, step, steps }
+        let crown = level.normal_gap().map(|gap| gap.rail().clone());
+        let bounds = GapBounds::new(placement, crown, (approach, opening))?;
+        Some(Self { level, bounds, skewed: placement.skew() != 0.0, approach, opening, step, steps })
+    }
+
+    /// Whether the least gap inside a window of η is that of the midplane of two profiles, whose turns have formulas.
+    pub(super) fn in_midplane(&self, window: Interval) -> bool {
+        !self.skewed && window.contains(0.0) && self.level.normal_gap().is_none()
     }
 
     /// Returns η \[mm\] of the least gap at ξ: 0 without skew; with skew NaN where a body has no surface at η = 0.
@@ -102,16 +114,6 @@ impl<'a> ByRoots<'a> {
             }
         }
         None
-    }
-
-    /// Returns whether the bodies are surely farther apart than δ along the whole line of ξ; `None` where a body has no surface at η = 0.
-    ///
-    /// Method: with skew, a parabola with the gap and slope at η = 0 falls below that gap by slope²/4a, with a the opening; slope²/a is
-    /// allowed for.
-    pub(super) fn is_apart(&mut self, xi: f64) -> Option<bool> {
-        let allowed = if self.skewed { self.opening.recip() } else { 0.0 };
-        let GapSlopes { gap, slopes: [_, across], .. } = self.level.at(xi, 0.0)?;
-        Some(gap - allowed * across * across > self.approach)
     }
 
     /// Returns the gap less δ \[mm\] at the lowest place of ξ.
