@@ -99,7 +99,8 @@ impl Patch {
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew a part is missed
     /// only between two turns of s along a valley between which the surfaces are parallel to 1e-13 (see the docs on numerics); on a roller,
-    /// only where it is shallower than 1e-12 mm, and beside a step or an upright place of a body within 1/512 of the range of ξ.
+    /// only where it is shallower than 1e-12 mm, beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a
+    /// hollow kink of a skewed wheel, where a line of constant ξ has two lowest places.
     /// Where a body varies a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
     /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
     /// the boundary is interpolated to 1e-9 of its width.

@@ -103,13 +103,16 @@ impl<'a> GapBounds<'a> {
 
     /// Returns the σ \[mm\] at which the roller's crown has kinks, if t over it is the gap.
     pub(super) fn kinks(&self) -> Vec<f64> {
-        let Some((crown, _)) = &self.crown else { return Vec::new() };
-        let is_kink = |&sigma: &f64| {
-            let beside = [sigma, sigma.next_up()].map(|sigma| crown.point(sigma));
-            let [Some(left), Some(right)] = beside else { return true };
-            (right.sin * left.cos - right.cos * left.sin).abs() > KINK
+        let Some((crown, section)) = &self.crown else { return Vec::new() };
+        let angle = |piece: usize, end: usize| {
+            let piece = &section.pieces[piece];
+            section.branches[piece.branch].slope_from(&section.end(piece, end).0).atan()
         };
-        crown.joints().into_iter().filter(is_kink).collect()
+        let pieces: Vec<_> = crown.pieces().collect();
+        let joints = pieces.windows(2).map(|pair| (pair[1].0.low, [pair[0].1, pair[1].1]));
+        // C parts its own piece.
+        let kinks = joints.filter(|&(_, [a, b])| a != b && (angle(a, 1) - angle(b, 0)).abs() > KINK);
+        kinks.map(|(sigma, _)| sigma).collect()
     }
 
     /// Returns bounds of the slope of the least gap between two places; infinite where none are known.
