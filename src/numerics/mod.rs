@@ -25,6 +25,12 @@ pub fn cosine(sin: f64) -> f64 {
     ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
 }
 
+/// Gives the cosine and the sine of the angle of a slope, which may be infinite.
+pub fn direction(slope: f64) -> [f64; 2] {
+    let cos = 1f64.hypot(slope).recip();
+    [cos, if cos == 0.0 { slope.signum() } else { slope * cos }]
+}
+
 /// Gives the largest of numbers ≥ 0: 0 of none, and NaN if one is NaN.
 pub fn largest(all: impl IntoIterator<Item = f64>) -> f64 {
     all.into_iter().fold(0.0, nan_max)

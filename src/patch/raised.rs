@@ -5,6 +5,7 @@
 use std::cell::{Cell, OnceCell};
 
 use crate::conformal::{RailArcLength, RailPoint};
+use crate::numerics::direction;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::roots::bracketed;
@@ -198,17 +199,15 @@ impl<'a> Raised<'a> {
         let (rail, approach) = (self.rail(), self.approach);
         let piece = &rail.pieces[index];
         let branch = &rail.branches[piece.branch];
-        let (slopes, derivatives) = (rail.slopes(index), branch.derivative_bounds(piece.xi));
+        let (slopes, [_, seconds]) = (rail.slopes(index), branch.derivative_bounds(piece.xi));
         // Between its ends a curve leaves its chord by no more than ζ″ l²/8.
-        let bulge = derivatives[1].magnitude() * piece.xi.width().powi(2) / 8.0;
+        let bulge = seconds.magnitude() * piece.xi.width().powi(2) / 8.0;
         let heights = Interval::between(piece.heights[0], piece.heights[1]).grown(bulge);
         let bounds = [piece.xi.grown(approach.abs() / 2.0), heights.hull(heights + approach)];
         // These bounds hold for all curves along which t + δ (1 − cos α) is constant and |t| at most δ; the raised curve is one of them.
-        let turned = 2.0 * approach.abs() * branch.curvature_bounds(derivatives).magnitude();
-        let flattest = slopes.nearest(0.0);
-        let cosines = Interval::between(cosine(slopes.magnitude()), cosine(flattest));
-        let sines =
-            slopes.map(|slope| if slope.is_infinite() { slope.signum() } else { slope * cosine(slope) });
+        let turned = 2.0 * approach.abs() * branch.curvature_bounds(piece.xi).magnitude();
+        let cosines = Interval::new(direction(slopes.magnitude())[0], direction(slopes.nearest(0.0))[0]);
+        let sines = slopes.map(|slope| direction(slope)[1]);
         RaisedPiece { sigma, bounds, direction: [cosines.grown(turned), sines.grown(turned)] }
     }
 
@@ -247,11 +246,6 @@ impl<'a> Raised<'a> {
         let runs = pieces.flat_map(|piece| self.runs(&piece));
         runs.filter_map(|run| bracketed(|sigma| self.xi(sigma) - xi, run.low, run.high)).collect()
     }
-}
-
-/// Returns the cosine of the angle of a slope.
-fn cosine(slope: f64) -> f64 {
-    1f64.hypot(slope).recip()
 }
 
 #[cfg(test)]

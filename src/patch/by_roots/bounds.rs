@@ -2,10 +2,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::tilts::{ANGLE_ROUNDING, Tilts, cosines};
 use crate::conformal::RailArcLength;
 use crate::numerics::interval::Interval;
 use crate::patch::in_valleys::circle::Turned;
-use crate::patch::in_valleys::tilts::{ANGLE_ROUNDING, Tilts, cosines};
 use crate::placement::Placement;
 use crate::profile::Section;
 
@@ -29,7 +29,7 @@ const NARROWEST: f64 = 1e-9;
 pub(super) struct LowestPlace {
     /// ξ or σ \[mm\].
     pub(super) xi: f64,
-    /// η of the least gap \[mm\].
+    /// η of the least gap \[mm\], or of one far above δ.
     pub(super) eta: f64,
     /// Bounds of the least gap inside the window, less δ \[mm\]; the upper one is that at η. NaN where a body is missing.
     pub(super) depth: Interval,
@@ -68,16 +68,17 @@ struct CrownBounds {
 /// Bounds of the slopes of the gap.
 struct SlopeBounds {
     along: Interval,
-    /// Along ξ or σ where the gap does not slope along η. They are narrow where a kink of the wheel is lowest, too.
+    /// Along ξ or σ, where the gap does not slope along η. They are narrow where a kink of the wheel is lowest, too.
     lowest: Interval,
     across: Interval,
 }
 
 impl CrownBounds {
-    /// Returns bounds of a wheel's slope along the crown where it has a given slope across, from the direction of its circles in ξ, η
-    /// and ζ; `None` where these may run across the crown.
+    /// Returns bounds of a wheel's slope along the crown from its slope across and the direction of its circles in ξ, η and ζ; `None`
+    /// where a circle may run square to the crown.
     ///
-    /// Method: the surface holds its circle. So its normal is perpendicular to that and to the direction across, also on a kink.
+    /// Method: a surface of revolution holds a circle through each of its points, also on a kink. The direction of that circle and the
+    /// one across span the tangent plane.
     fn slope_on_circle(&self, [xi, eta, zeta]: [Interval; 3], across: Interval) -> Option<Interval> {
         let (sin, cos) = (self.angle.map(f64::sin), cosines(self.angle));
         let along = xi * cos + zeta * sin;
@@ -117,9 +118,8 @@ impl<'a> GapBounds<'a> {
 
     /// Returns bounds of the slope of the least gap between two places; infinite where none are known.
     ///
-    /// Method: the least gap of a line has the slope of the gap along ξ at its lowest place, and at least it grows no faster than any
-    /// of the gaps that it is the least of. The lowest places lie between two η of which one has a falling and the other a rising gap
-    /// along η, over the whole range of ξ.
+    /// Method: from line to line the least gap changes as the gap does along ξ at the lowest place. The lowest places of a range of ξ lie
+    /// between an η at which the gap falls along η all over that range, and one at which it rises.
     pub(super) fn slopes(&self, [a, b]: [&LowestPlace; 2], skewed: bool, window: Interval) -> Interval {
         let cell = Interval::new(a.xi, b.xi);
         let found = || {
@@ -176,6 +176,7 @@ impl<'a> GapBounds<'a> {
     fn over(&self, crown: &CrownBounds, gap: Interval, eta: Interval) -> Option<SlopeBounds> {
         let below = self.crown.as_ref().map_or(0.0, |_| eta.magnitude().powi(2) / self.bodies[1].radii.low);
         let below = Interval::new(0.0, below);
+        // `up` is 1 for the wheel, and −1 for the roller, which is seen upside down.
         let of_body = |body: usize, up: f64, gap: Interval, across: Option<Interval>| {
             let angle = crown.angle * Interval::of(up);
             let xi = match self.crown {
@@ -212,10 +213,8 @@ impl<'a> GapBounds<'a> {
         };
         let xi = Interval::new(crown.point(cell.low)?.xi, crown.point(cell.high)?.xi);
         let pieces = section.pieces_from(xi.low).iter().take_while(|piece| piece.xi.low <= xi.high);
-        let curvatures = pieces.map(|piece| {
-            let branch = &section.branches[piece.branch];
-            branch.curvature_bounds(branch.derivative_bounds(xi.cut(piece.xi)))
-        });
+        let curvatures =
+            pieces.map(|piece| section.branches[piece.branch].curvature_bounds(xi.cut(piece.xi)));
         Some(CrownBounds {
             xi,
             angle: section.slopes_over(xi)?.map(f64::atan),

@@ -6,6 +6,7 @@
 //! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles.
 
 mod bounds;
+mod tilts;
 pub(super) mod turns;
 
 use bounds::GapBounds;

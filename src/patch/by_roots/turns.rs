@@ -19,7 +19,7 @@ const SHORTEST: f64 = 1e-14;
 /// upright there, normals of a roller meet a sheet of the wheel that others hide from C, or a body is missing at both ends.
 const UNKNOWN: f64 = 1.0 / 512.0;
 
-/// Number of ranges after which none is halved again.
+/// Number of ranges after which none is halved again: a hundred times those of usual pairs.
 const MOST_RANGES: usize = 1 << 14;
 
 /// Share of a depth by which the least gap may be uncertain.
@@ -59,7 +59,7 @@ impl LeastGap<'_, '_> {
     /// once. At `torn` places it may step; they are among those returned.
     ///
     /// Method: between two places the least gap stays between straight lines of its largest and least slope. A range is halved until
-    /// these prove that the gap does not pass δ, or does not turn. Cost: some ten places for every passage.
+    /// these prove that the gap does not pass δ, or does not turn. Cost: the least gaps at some hundred places.
     pub(in crate::patch) fn turns(mut self, torn: Vec<f64>) -> Vec<f64> {
         let mut turns = vec![self.over.low];
         let mut count = 0;
@@ -102,9 +102,7 @@ impl LeastGap<'_, '_> {
             place
         };
         let c = self.over.contains(0.0).then(|| take(&mut self, &mut least, 0.0, 0.0));
-        // Without skew the least gap may step where a profile does.
-        let steps = self.slices.steps.iter().flatten().flat_map(|step| step.ends());
-        let ranges = self.ranges([0.0].into_iter().chain(steps).collect());
+        let ranges = self.ranges(vec![0.0]);
         let ends = |range: Interval| range.ends().map(|xi| take(&mut self, &mut least, xi, 0.0));
         let mut waiting: Vec<_> = ranges.into_iter().map(ends).collect();
         let mut count = 0;
@@ -129,10 +127,14 @@ impl LeastGap<'_, '_> {
         Some(self.turn_near(least).unwrap_or(least.xi))
     }
 
-    /// Parts the range at places where the least gap may step: given ones, and kinks of a roller under its normals. Right of one, a part
-    /// begins beside it.
+    /// Parts the range at given places, and where the least gap may step: over the tangent plane at steps of the profiles, over the roller's
+    /// surface at its kinks. Right of one, a part begins beside it.
     fn ranges(&self, mut torn: Vec<f64>) -> Vec<Interval> {
-        torn.extend(self.slices.bounds.kinks());
+        let ByRoots { bounds, steps, level, .. } = &*self.slices;
+        match level.normal_gap() {
+            Some(_) => torn.extend(bounds.kinks()),
+            None => torn.extend(steps.iter().flatten().flat_map(|step| step.ends())),
+        }
         let beside = |low: f64| if low == self.over.low { low } else { low.next_up() };
         self.over.parts(torn).map(|part| Interval::new(beside(part.low), part.high)).collect()
     }

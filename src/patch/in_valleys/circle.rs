@@ -3,13 +3,14 @@
 
 use nalgebra::{UnitComplex, Vector2};
 
+use crate::numerics::direction;
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Branch, Section};
 
 /// Farthest place from the midplane that is examined, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is treated as if it ended
 /// at 0.7 ρ.
-pub(super) const FARTHEST: f64 = 0.369;
+pub(in crate::patch) const FARTHEST: f64 = 0.369;
 
 /// Distance of a point beside an end or step, as a share of R. It is a million roundings, and less than any segment.
 pub(in crate::patch) const BESIDE: f64 = 1e-9;
@@ -20,13 +21,13 @@ const MARGIN: f64 = 0.05;
 /// Places the circles of a wheel's profile points over the tangent plane of a skewed placement.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::patch) struct Turned<'a> {
-    pub(super) section: &'a Section,
+    pub(in crate::patch) section: &'a Section,
     /// R, the axle distance of C \[mm\].
-    pub(super) axle: f64,
+    pub(in crate::patch) axle: f64,
     /// The rotation by θ, from the wheel's contact frame to its profile's axes.
-    pub(super) tilt: UnitComplex<f64>,
+    pub(in crate::patch) tilt: UnitComplex<f64>,
     /// The rotation by χ, from the wheel's directions in the tangent plane to ξ and η.
-    pub(super) skew: UnitComplex<f64>,
+    pub(in crate::patch) skew: UnitComplex<f64>,
 }
 
 /// The circle of one profile point about the axle.
@@ -94,8 +95,7 @@ impl<'a> Turned<'a> {
     /// Returns t of the place that is parallel to η on the circle of a point whose profile has a slope, which may be infinite, and the
     /// direction of the surface there. t and the angle of the direction are monotone functions of the profile's angle.
     pub(super) fn parallel_to_tangent(&self, slope: f64) -> (f64, Vector2<f64>) {
-        let cos = 1.0 / 1f64.hypot(slope);
-        self.parallel_of(Vector2::new(cos, if cos == 0.0 { slope.signum() } else { slope * cos }))
+        self.parallel_of(direction(slope).into())
     }
 
     /// Returns t of the place that is parallel to η and the direction of the surface there, from the unit tangent of the profile.
@@ -197,7 +197,7 @@ impl<'a> Turned<'a> {
     }
 
     /// Returns the rounding of ξ and ζ \[mm\].
-    pub(super) fn rounding(&self) -> f64 {
+    pub(in crate::patch) fn rounding(&self) -> f64 {
         64.0 * f64::EPSILON * self.axle
     }
 

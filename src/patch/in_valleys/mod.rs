@@ -7,5 +7,4 @@ pub(super) mod lanes;
 pub(crate) mod monotone;
 mod path;
 pub(super) mod slicer;
-pub(super) mod tilts;
 pub(crate) mod valleys;

@@ -463,14 +463,12 @@ impl Branch {
         }
     }
 
-    /// Computes bounds of the curvature \[1/mm\], positive where the hollow side is up, from those of ζ′ and ζ″.
-    pub(crate) fn curvature_bounds(&self, [slopes, seconds]: [Interval; 2]) -> Interval {
-        if let BranchShape::Arc(arc) = &self.shape {
-            return Interval::of(arc.curvature);
+    /// Computes bounds of the curvature \[1/mm\], positive where the hollow side is up, over a range of ξ \[mm\].
+    pub(crate) fn curvature_bounds(&self, xi: Interval) -> Interval {
+        match &self.shape {
+            BranchShape::Arc(arc) => Interval::of(arc.curvature),
+            BranchShape::Polynomial(p) => p.curvature_bounds(xi),
         }
-        let cosine = |slope: f64| 1f64.hypot(slope).recip();
-        let cosines = Interval::new(cosine(slopes.magnitude()), cosine(slopes.nearest(0.0)));
-        if cosines.low == 0.0 { Interval::ALL } else { seconds * cosines.map(|cosine| cosine.powi(3)) }
     }
 }
 

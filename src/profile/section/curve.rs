@@ -80,9 +80,21 @@ impl PolynomialBranch {
         if run.low <= 0.0 {
             return [slope; 2];
         }
+        [slope, self.turn(xi, [run, rise]).quotient(run.map(|v| v.powi(3)))]
+    }
+
+    /// Returns bounds of the curvature \[1/mm\] over an interval of ξ \[mm\]; infinite where both rates may be 0.
+    pub(super) fn curvature_bounds(&self, xi: Interval) -> Interval {
+        let (rates @ [run, rise], _) = self.rates(xi);
+        let slowest = run.nearest(0.0).hypot(rise.nearest(0.0));
+        let speed = Interval::new(slowest, run.magnitude().hypot(rise.magnitude()));
+        if slowest == 0.0 { Interval::ALL } else { self.turn(xi, rates).quotient(speed.map(|v| v.powi(3))) }
+    }
+
+    /// Returns bounds of ζ″ξ′ − ξ″ζ′ over an interval of ξ \[mm\] from those of ξ′ and ζ′.
+    fn turn(&self, xi: Interval, [run, rise]: [Interval; 2]) -> Interval {
         let t = self.parameters(xi);
         let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), t));
-        let turn = sag * run + -(bend * rise);
-        [slope, turn.quotient(run.map(|v| v.powi(3)))]
+        sag * run + -(bend * rise)
     }
 }

@@ -2,38 +2,40 @@
 
 use nalgebra::Vector2;
 
-use super::circle::{FARTHEST, Turned};
+use crate::numerics::direction;
 use crate::numerics::interval::Interval;
+use crate::patch::in_valleys::circle::{FARTHEST, Turned};
 
 /// Rounding of an angle of a surface.
-pub(in crate::patch) const ANGLE_ROUNDING: f64 = 1e-14;
+pub(super) const ANGLE_ROUNDING: f64 = 1e-14;
 
 /// Bounds of the direction of a wheel's surface.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::patch) struct TiltBounds {
+pub(super) struct TiltBounds {
     /// Angle of the surface from ξ in planes of constant η \[rad\].
-    pub(in crate::patch) angle: Interval,
+    pub(super) angle: Interval,
     /// Slope of the surface along η, seen along the normal of its section with such a plane: ∂ζ/∂η is that over the cosine of the angle.
-    pub(in crate::patch) lean: Interval,
+    pub(super) lean: Interval,
     /// Direction of the circles about the axle in ξ, η and ζ.
-    pub(in crate::patch) circle: [Interval; 3],
+    pub(super) circle: [Interval; 3],
 }
 
 /// Returns the cosines of angles up to a right one.
-pub(in crate::patch) fn cosines(angle: Interval) -> Interval {
+pub(super) fn cosines(angle: Interval) -> Interval {
     Interval::new(angle.magnitude().cos(), angle.nearest(0.0).cos())
 }
 
 /// Bounds the tilts of a wheel's surface.
 #[derive(Debug)]
-pub(in crate::patch) struct Tilts<'a> {
+pub(super) struct Tilts<'a> {
     turned: Turned<'a>,
     /// Of all circles \[mm\].
-    pub(in crate::patch) radii: Interval,
+    pub(super) radii: Interval,
 }
 
 impl<'a> Tilts<'a> {
-    pub(in crate::patch) fn new(turned: Turned<'a>) -> Self {
+    /// Makes the bounds of a wheel's surface; that of a roller is one upside down.
+    pub(super) fn new(turned: Turned<'a>) -> Self {
         let mut tilts = Self { turned, radii: Interval::NONE };
         let section = turned.section;
         for (k, piece) in section.pieces.iter().enumerate() {
@@ -79,7 +81,7 @@ impl<'a> Tilts<'a> {
     ///
     /// Method: at one angle v of the circles the surface's angle from ξ grows with the profile's angle, so that the ends of the latter
     /// bound it. Bounds of the derivatives by v do the rest.
-    pub(in crate::patch) fn over(&self, xi: Interval, eta: Interval) -> Option<TiltBounds> {
+    pub(super) fn over(&self, xi: Interval, eta: Interval) -> Option<TiltBounds> {
         let Turned { tilt, skew, .. } = self.turned;
         let [sin, cos] = [skew.im, skew.re].map(Interval::of);
         let (own_xi, own_eta) = (xi * cos + eta * sin, eta * cos + -(xi * sin));
@@ -94,8 +96,7 @@ impl<'a> Tilts<'a> {
         let versine = sin_v * sin_v / (1.0 + turn.middle().cos());
         let (mut angle, mut sideways) = (Interval::NONE, Interval::NONE);
         for slope in slopes.ends() {
-            let cos = 1.0 / 1f64.hypot(slope);
-            let tangent = Vector2::new(cos, if cos == 0.0 { slope.signum() } else { slope * cos });
+            let tangent: Vector2<f64> = direction(slope).into();
             let towards_axle = (tilt * tangent).x;
             let along = tangent.y + towards_axle * versine * tilt.im;
             let up = tangent.x - towards_axle * versine * tilt.re;
