@@ -12,6 +12,8 @@ from solve import traction
 
 # Share of load and approach to which both are met.
 TOLERANCE = 1e-6
+# Tolerance of the solver.
+SOLVED = 1e-8
 STEPS = 40
 
 
@@ -20,7 +22,7 @@ def solved(gap, closing, cosine, steps, modulus, load, guess):
     cell = np.prod(steps)
     approach, total = guess, load / cosine.mean()
     for _ in range(STEPS):
-        pressure, rest = traction(gap - approach * closing[:, None], steps, modulus, total)
+        pressure, rest = traction(gap - approach * closing[:, None], steps, modulus, total, SOLVED)
         carried = (pressure * cosine[:, None]).sum() * cell
         # By how much the bodies would still have to approach: 0 when the closure is all of it.
         rest /= (pressure * closing[:, None]).sum() / pressure.sum()
