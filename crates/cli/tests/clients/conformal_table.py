@@ -12,7 +12,7 @@ from solve import traction
 
 # Share of load and approach to which both are met.
 TOLERANCE = 1e-6
-# Tolerance of the solver.
+# Tolerance of Tamaas: a hundredth of that, so that the steps settle.
 SOLVED = 1e-8
 STEPS = 40
 

@@ -4,11 +4,11 @@ import { pathToFileURL } from "node:url";
 export const FLAGS = [
     "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
-    // Without a graphics card the compositor would be emulated, too, which takes the tests of pages a fifth longer.
+    // Where there is no graphics card, WebGL alone is emulated: with the compositor, too, these tests take a fifth longer.
     "--disable-gpu-compositing",
 ];
 
-/** What a driver, not the page, says of a picture in space that is read back to be put on the page. */
+/** A driver's note on its own speed, no fault of a page: without a card, pictures in space are copied to the compositor. */
 const OF_DRIVER = /GL Driver Message \(OpenGL, Performance/;
 
 /** How long an action may take on a machine that has much else to do, ms: what never comes ends a test, what is slow does not. */
