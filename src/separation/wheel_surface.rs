@@ -212,24 +212,22 @@ impl<'a> WheelSurface<'a> {
     }
 
     /// Finds the sagitta \[mm\] at which a column over a branch folds, between `from`, which is next to a wall of the profile, and
-    /// `to`. From the wall to the fold u falls as the sagitta grows, and the surface faces away. Returns `None` if u grows at `from`.
+    /// `to`. From the wall to the fold u falls as the sagitta grows, and the surface faces away. Returns `None` if u grows at `from`. The
+    /// wheel must be tilted: without tilt a column stays at one abscissa, and meets no wall.
     fn fold(&self, xi: f64, branch: &Branch, from: f64, to: f64) -> Option<f64> {
-        let along = |parameter: f64| {
+        // The branch's station at a parameter, and the sagitta at which the column meets it.
+        let met = |parameter: f64| {
             let station = branch.station_and_curvature(parameter).0;
             (station, (xi - station.x) / self.sin)
         };
         // du/de halved, w + e (1 + dw/de), where dw/de = −cosθ dζ/de; times the cosine of the profile, which is 0 at the wall.
         let growth = |parameter: f64| {
-            let (Station { z, cos, sin, .. }, e) = along(parameter);
+            let (Station { z, cos, sin, .. }, e) = met(parameter);
             let w = self.axle_distance(xi, z + e * self.cos);
             (w + e) * cos - e * self.cos * (self.cos * cos - self.sin * sin)
         };
         let [from, to] = [from, to].map(|e| branch.parameter(self.abscissa(xi, e)));
-        if growth(from) < 0.0 {
-            bracketed(growth, from, to).map(|parameter| along(parameter).1)
-        } else {
-            None
-        }
+        if growth(from) < 0.0 { bracketed(growth, from, to).map(|parameter| met(parameter).1) } else { None }
     }
 
     /// Returns w \[mm\] of the point with height ζ = `height` \[mm\] of the column at ξ.
