@@ -4,7 +4,7 @@ use super::columns::SweepColumns;
 use super::polylines::thinned;
 use crate::export::JoinedPair;
 use crate::placement::Pair;
-use crate::profile::{Profile, trace};
+use crate::profile::{Profile, points_along};
 
 /// Distance of a profile's points \[mm\].
 const STEP: f64 = 0.5;
@@ -20,8 +20,7 @@ const CLEARANCE: f64 = 12.0;
 /// the wheel, which is raised. `gauge` is the abscissa of the gauge line in the rail profile's axes \[mm\].
 pub fn joined_pair(pair: &Pair, columns: &SweepColumns, gauge: Option<f64>) -> JoinedPair {
     let polyline = |profile: &Profile, up: f64| -> Vec<[f64; 2]> {
-        let marks = thinned(&trace(profile, STEP), MOST_POINTS);
-        marks.iter().map(|mark| [mark.station.x, mark.station.z + up]).collect()
+        thinned(&points_along(profile, STEP), MOST_POINTS).iter().map(|at| [at.x, at.y + up]).collect()
     };
     let (rail, wheel) = (polyline(pair.rail(), 0.0), polyline(pair.wheel(), 0.0));
     let top = rail.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);

@@ -5,7 +5,7 @@ use nalgebra::{Point2, UnitComplex};
 use super::doubts::ContactDoubts;
 use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
-use crate::profile::{Mark, last_groove, trace};
+use crate::profile::{last_groove, points_along};
 use crate::search::{Contact, SweepRow, TrackSide};
 
 /// Distance of the marks \[mm\] along a profile: over a flange's face of 70° the lift is off by less than 0.15 mm.
@@ -81,16 +81,13 @@ pub struct Landmarks {
 impl Landmarks {
     /// Finds the landmarks of a pair, to 0.05 mm along its profiles.
     pub fn new(pair: &Pair) -> Self {
-        let rail = trace(pair.rail(), STEP);
-        let heights: Vec<f64> = rail.iter().map(|mark| mark.station.z).collect();
-        let head = &rail[last_groove(&heights).unwrap_or(0)..];
-        let wheel = trace(pair.wheel(), STEP);
-        let point = |mark: &Mark| Point2::new(mark.station.x, mark.station.z);
-        let top = head.iter().map(point).max_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
-        let low = wheel.iter().map(point).min_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
-        let reach = Interval::around(wheel.iter().map(|mark| mark.station.x));
-        let back =
-            wheel.iter().filter(|mark| mark.station.x < reach.low + BACK_WIDTH).map(|mark| mark.station.z);
+        let [rail, wheel] = [pair.rail(), pair.wheel()].map(|profile| points_along(profile, STEP));
+        let heights: Vec<f64> = rail.iter().map(|at| at.y).collect();
+        let head = rail[last_groove(&heights).unwrap_or(0)..].iter().copied();
+        let top = head.max_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
+        let low = wheel.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y)).unwrap_or_default();
+        let reach = Interval::around(wheel.iter().map(|at| at.x));
+        let back = wheel.iter().filter(|at| at.x < reach.low + BACK_WIDTH).map(|at| at.y);
         let back = back.fold(f64::NEG_INFINITY, f64::max) - low.y;
         let tip = (median_height(&wheel) - low.y >= FLANGE).then_some(low);
         Self { pair: pair.clone(), top, tip, reach, back }
@@ -121,11 +118,8 @@ impl Landmarks {
 }
 
 /// Returns the median height over x \[mm\]: that of the tread.
-fn median_height(marks: &[Mark]) -> f64 {
-    let runs = marks.windows(2).map(|pair| {
-        let [a, b] = [&pair[0].station, &pair[1].station];
-        (0.5 * (a.z + b.z), (b.x - a.x).abs())
-    });
+fn median_height(points: &[Point2<f64>]) -> f64 {
+    let runs = points.windows(2).map(|pair| (0.5 * (pair[0].y + pair[1].y), (pair[1].x - pair[0].x).abs()));
     let mut runs: Vec<(f64, f64)> = runs.collect();
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = 0.5 * runs.iter().map(|(_, run)| run).sum::<f64>();

@@ -2,7 +2,7 @@
 
 use super::input::{Profiles, SideProfiles};
 use crate::export::{PageCut, PagePair, PageProfile};
-use crate::profile::{Profile, Station, trace};
+use crate::profile::{Profile, points_along};
 
 /// Distance of a profile's points \[mm\].
 const STEP: f64 = 0.25;
@@ -24,9 +24,9 @@ pub(super) fn pairs(profiles: &Profiles) -> Vec<PagePair> {
 
 /// Gives a profile as a polyline; one of very many points is thinned.
 fn polyline(profile: &Profile) -> PageProfile {
-    let marks = thinned(&trace(profile, STEP), MOST_POINTS);
-    let coordinate = |of: fn(&Station) -> f64| marks.iter().map(|mark| of(&mark.station)).collect();
-    PageProfile { name: profile.name.clone(), x: coordinate(|s| s.x), z: coordinate(|s| s.z) }
+    let points = thinned(&points_along(profile, STEP), MOST_POINTS);
+    let (x, z) = points.iter().map(|at| (at.x, at.y)).unzip();
+    PageProfile { name: profile.name.clone(), x, z }
 }
 
 /// Gives at most about `most` of some items, evenly chosen, the first and the last among them.

@@ -8,7 +8,7 @@ use super::doubts::{Doubt, DoubtKind};
 use super::landmarks::{Landmarks, Touching};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
-use crate::profile::{Profile, trace};
+use crate::profile::{Profile, points_along};
 
 /// Steepest inclination that raises no doubt \[rad\]: 1:5.
 const STEEPEST: f64 = 0.2;
@@ -155,7 +155,7 @@ pub fn approach(rail: &Profile, approach: f64, estimated: bool) -> Option<Doubt>
     if approach <= *APPROACHES.end() {
         return None;
     }
-    let height = Interval::around(trace(rail, 1.0).iter().map(|mark| mark.station.z)).width();
+    let height = Interval::around(points_along(rail, 1.0).iter().map(|at| at.y)).width();
     let beyond = if approach > height { ", more than the rail's profile is high" } else { "" };
     Some(Doubt::new(DoubtKind::Approach, format!("an approach of {approach:.4} mm{beyond}")))
 }

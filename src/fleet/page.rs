@@ -11,7 +11,7 @@ use crate::case::{Case, DoubtSet, SweepColumns, about_bodies, sweep_page};
 use crate::error::{Error, Result};
 use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
 use crate::files::{KeptFolder, NewFile};
-use crate::profile::{Profile, Station, trace};
+use crate::profile::{Profile, points_along};
 use crate::scene;
 use crate::search::{Conicity, ONE_CONTACT, ParallelSweep, Position, Selection};
 
@@ -170,9 +170,8 @@ fn worst_pages(fleet: &Listed, folder: &KeptFolder, worst: &[WorstPair]) -> Resu
 }
 
 fn outline(rail: &Profile) -> PageProfile {
-    let marks = trace(rail, OUTLINE);
-    let coordinate = |of: fn(&Station) -> f64| marks.iter().map(|mark| of(&mark.station)).collect();
-    PageProfile { name: rail.name.clone(), x: coordinate(|at| at.x), z: coordinate(|at| at.z) }
+    let (x, z) = points_along(rail, OUTLINE).iter().map(|at| (at.x, at.y)).unzip();
+    PageProfile { name: rail.name.clone(), x, z }
 }
 
 /// Returns the page of a pair's sweep.

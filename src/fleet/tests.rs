@@ -3,6 +3,7 @@
 use super::list::{ListedWheelset, Source};
 use super::profiles::{data, keys};
 use super::*;
+use crate::scene::SideData;
 
 fn fleet(wheelsets: usize, sections: usize) -> Fleet {
     let source = |k: usize| Source::File(format!("{k}").into());
@@ -12,10 +13,13 @@ fn fleet(wheelsets: usize, sections: usize) -> Fleet {
         radii: [None; 2],
         rails: None,
     };
+    let mirrored = ProfileData { mirror: Some(true), ..Default::default() };
     Fleet {
         listed: Listed {
-            scene: scene::parse("wheel = { radius = 460.0 }\nleft = { wheel = { mirror = true } }", false)
-                .unwrap(),
+            scene: Scene {
+                left: Some(SideData { wheel: Some(mirrored), ..Default::default() }),
+                ..Default::default()
+            },
             folder: "scenes".into(),
             wheelsets: (0..wheelsets).map(wheelset).collect(),
             sections: (0..sections).map(|k| Some(source(k))).collect(),

@@ -19,8 +19,6 @@ mod quantity;
 mod rail;
 mod repeats;
 mod rows;
-#[cfg(test)]
-mod tests;
 mod wheel;
 
 pub use align::Alignment;

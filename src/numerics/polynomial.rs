@@ -111,18 +111,16 @@ pub fn exact_values<const N: usize>(c: &[Twice], t: &[Twice; N]) -> ([Twice; N],
     (exact, slope)
 }
 
-/// Computes p(t) in twice the working precision.
-pub fn exact_value(c: &[Twice], t: Twice) -> Twice {
-    exact_values(c, &[t]).0[0]
-}
-
-/// Computes p′(t) in twice the working precision.
-pub fn exact_slope(c: &[Twice], t: Twice) -> Twice {
-    let mut sum = Twice::ZERO;
-    for (k, &c) in c.iter().enumerate().skip(1).rev() {
-        sum = sum * t + c * k as f64;
+/// Computes the first N coefficients about t, p(t), p′(t), p″(t)/2, …, in twice the working precision by Horner's rule.
+pub fn exact_coefficients<const N: usize>(c: &[Twice], t: Twice) -> [Twice; N] {
+    let mut about = [Twice::ZERO; N];
+    for &c in c.iter().rev() {
+        for k in (1..N).rev() {
+            about[k] = about[k] * t + about[k - 1];
+        }
+        about[0] = about[0] * t + c;
     }
-    sum
+    about
 }
 
 /// Computes the coefficients c′ about t = `centre`: p(centre + u) = Σ c′_k u^k, in the working precision or twice that.
@@ -217,7 +215,7 @@ mod tests {
     #[test]
     fn recentring_keeps_values() {
         let moved = recentred(&C.map(Twice::from), Twice::from(3.0));
-        let there = exact_value(&moved, Twice::from(-2.25));
+        let [there] = exact_coefficients(&moved, Twice::from(-2.25));
         assert!((there.high - value(&C, 0.75)).abs() < 1e-15);
     }
 

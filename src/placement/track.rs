@@ -9,7 +9,9 @@
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
-use crate::profile::{Branch, Profile, Section, Segment, Side, Station, last_groove, parallel_to, trace};
+use crate::profile::{
+    Branch, Profile, Section, Segment, Side, Station, last_groove, parallel_to, points_along,
+};
 
 /// Where the rails are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -176,9 +178,9 @@ struct RunningHead {
 
 impl RunningHead {
     fn of(rail: &Profile) -> Self {
-        let marks = trace(rail, GROOVE_MARKS);
-        let heights: Vec<f64> = marks.iter().map(|mark| mark.station.z).collect();
-        let from = last_groove(&heights).map_or(f64::NEG_INFINITY, |bottom| marks[bottom].station.x);
+        let points = points_along(rail, GROOVE_MARKS);
+        let heights: Vec<f64> = points.iter().map(|at| at.y).collect();
+        let from = last_groove(&heights).map_or(f64::NEG_INFINITY, |bottom| points[bottom].x);
         Self { section: Section::own_axes(rail, Side::Rail), from }
     }
 

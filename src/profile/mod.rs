@@ -35,4 +35,5 @@ pub use section::{ProfilePoint, Section};
 pub use segment::{Segment, Shape};
 pub use side::Side;
 pub use station::Station;
+pub(crate) use trace::points_along;
 pub use trace::{Beside, Mark, beside, trace};

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::station::Station;
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
-use crate::numerics::polynomial::{exact_slope, exact_value, recentred};
+use crate::numerics::polynomial::{exact_coefficients, recentred};
 use crate::numerics::twice::Twice;
 
 /// A curve (x(t), z(t)) with polynomial coordinates. The coefficients are about a point of the curve itself and have twice
@@ -81,7 +81,7 @@ impl Polynomial {
 
     /// Returns \[dx/dt, dz/dt\] at parameter t.
     pub(super) fn rates(&self, t: f64) -> [f64; 2] {
-        [&self.x, &self.z].map(|c| exact_slope(c, t.into()).into())
+        [&self.x, &self.z].map(|c| exact_coefficients(c, t.into())).map(|[_, rate]: [Twice; 2]| rate.into())
     }
 
     /// Returns the range of the parameter, ascending \[mm or the spline's unit\].
@@ -91,24 +91,20 @@ impl Polynomial {
 
     /// Returns the station at parameter t.
     pub fn station(&self, t: f64) -> Station {
-        let [dx, dz] = self.rates(t);
-        let (t, norm) = (Twice::from(t), dx.hypot(dz));
-        Station {
-            x: exact_value(&self.x, t).into(),
-            z: exact_value(&self.z, t).into(),
-            cos: dx / norm,
-            sin: dz / norm,
-        }
+        let [x, z] = [&self.x, &self.z].map(|c| exact_coefficients(c, t.into()).map(f64::from));
+        station(x, z)
     }
 
     /// Returns the curvature \[1/mm\] at t, positive if the curve turns counter-clockwise.
     pub fn curvature(&self, t: f64) -> f64 {
-        let about = |c: &[Twice]| {
-            let c = recentred(c, t.into());
-            [1, 2].map(|k| c.get(k).map_or(0.0, |&c| f64::from(c)))
-        };
-        let ([dx, hx], [dz, hz]) = (about(&self.x), about(&self.z));
-        2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3)
+        self.station_and_curvature(t).1
+    }
+
+    /// Returns the station at parameter t, and the curvature \[1/mm\] there.
+    pub(super) fn station_and_curvature(&self, t: f64) -> (Station, f64) {
+        let [[x, dx, hx], [z, dz, hz]] =
+            [&self.x, &self.z].map(|c| exact_coefficients(c, t.into()).map(f64::from));
+        (station([x, dx], [z, dz]), 2.0 * (dx * hz - dz * hx) / dx.hypot(dz).powi(3))
     }
 
     /// Returns the coefficients of x and z \[mm\] in powers of a parameter that goes from 0 to 1 between these shares of the range.
@@ -164,6 +160,12 @@ impl Polynomial {
         z[0] += frame.z;
         Self { t: self.t, x, z }
     }
+}
+
+/// Returns the station at a point with these rates.
+fn station([x, dx]: [f64; 2], [z, dz]: [f64; 2]) -> Station {
+    let norm = dx.hypot(dz);
+    Station { x, z, cos: dx / norm, sin: dz / norm }
 }
 
 /// Turns the curve (x(t), z(t)) less the point `about` into (x cos + z sin, z cos − x sin), coefficient by coefficient.

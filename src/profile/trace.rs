@@ -1,6 +1,9 @@
 //! Follows a profile by arc length, to plot it and to compare two curves.
 
+use nalgebra::Point2;
+
 use super::{Polynomial, Profile, Segment, Shape, Station};
+use crate::numerics::twice::Twice;
 
 /// A station with its distance along the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,19 +64,37 @@ const MOST_STEPS: f64 = 1e6;
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
-    let length: f64 = profile.segments().iter().map(segment_length).sum();
-    let step = step.max(length / MOST_STEPS);
+    let step = bounded(step, profile);
     let mut marks: Vec<Mark> = Vec::new();
     for (index, segment) in profile.segments().iter().enumerate() {
         let shares = shares(segment, step);
         for k in 0..=shares {
             let share = k as f64 / shares as f64;
-            let (station, curvature) = (at_share(segment, share), curvature(segment, share));
+            let (station, curvature) = at_share(segment, share);
             let walked = marks.last().map_or(0.0, |last| last.s + chord(&last.station, &station, curvature));
             marks.push(Mark { s: walked, station, curvature, segment: index });
         }
     }
     marks
+}
+
+/// Returns the points \[mm\] of the marks of [`trace`], where neither tangents nor lengths are needed.
+///
+/// Accuracy: the working precision.
+pub fn points_along(profile: &Profile, step: f64) -> Vec<Point2<f64>> {
+    let step = bounded(step, profile);
+    let of = |segment: &Segment| {
+        let shares = shares(segment, step);
+        let share = |k: usize| k as f64 / shares as f64;
+        let points: Vec<Point2<f64>> = match &segment.shape {
+            Shape::Arc(arc) => {
+                (0..=shares).map(|k| arc.station_at(share(k))).map(|at| Point2::new(at.x, at.z)).collect()
+            }
+            Shape::Polynomial(polynomial) => (0..=shares).map(|k| point(polynomial, share(k))).collect(),
+        };
+        points
+    };
+    profile.segments().iter().flat_map(of).collect()
 }
 
 /// Finds the foot of a point \[mm\] on a trace. The search begins at mark `hint`: for points in a row, pass the mark found
@@ -116,20 +137,18 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Option<Beside> {
 /// Number of marks beyond the nearest one so far over which the search goes on.
 const LOOKED_ON: usize = 16;
 
-/// Returns the station at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
-fn at_share(segment: &Segment, share: f64) -> Station {
-    match &segment.shape {
-        Shape::Arc(arc) if share == 1.0 => arc.end,
-        Shape::Arc(arc) => arc.station_at(share),
-        Shape::Polynomial(polynomial) => polynomial.station(parameter(polynomial, share)),
-    }
+/// Returns a step \[mm\], or the least one where it is below that.
+fn bounded(step: f64, profile: &Profile) -> f64 {
+    let length: f64 = profile.segments().iter().map(segment_length).sum();
+    step.max(length / MOST_STEPS)
 }
 
-/// Returns the curvature \[1/mm\] at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
-fn curvature(segment: &Segment, share: f64) -> f64 {
+/// Returns the station and the curvature \[1/mm\] at a share (0 to 1) of an arc's length or of a polynomial's range of the parameter.
+fn at_share(segment: &Segment, share: f64) -> (Station, f64) {
     match &segment.shape {
-        Shape::Arc(arc) => arc.curvature(),
-        Shape::Polynomial(polynomial) => polynomial.curvature(parameter(polynomial, share)),
+        Shape::Arc(arc) if share == 1.0 => (arc.end, arc.curvature()),
+        Shape::Arc(arc) => (arc.station_at(share), arc.curvature()),
+        Shape::Polynomial(polynomial) => polynomial.station_and_curvature(parameter(polynomial, share)),
     }
 }
 
@@ -165,18 +184,22 @@ fn shares(segment: &Segment, step: f64) -> usize {
     }
 }
 
-/// Returns the lengths \[mm\] of the chords over equal shares of a polynomial's range; the working precision is enough for them.
+/// Returns the lengths \[mm\] of the chords over equal shares of a polynomial's range.
 fn chords(polynomial: &Polynomial, count: usize) -> impl Iterator<Item = f64> {
-    let at = move |k: usize| {
-        let t = parameter(polynomial, k as f64 / count as f64);
-        [&polynomial.x, &polynomial.z].map(|c| c.iter().rev().fold(0.0, |sum, c| sum * t + c.high))
-    };
+    let at = move |k: usize| point(polynomial, k as f64 / count as f64);
     let mut last = at(0);
     (1..=count).map(move |k| {
         let to = at(k);
         let from = std::mem::replace(&mut last, to);
-        (to[0] - from[0]).hypot(to[1] - from[1])
+        nalgebra::distance(&from, &to)
     })
+}
+
+/// Returns the point \[mm\] at a share (0 to 1) of a polynomial's range, in the working precision.
+fn point(polynomial: &Polynomial, share: f64) -> Point2<f64> {
+    let t = parameter(polynomial, share);
+    let at = |c: &[Twice]| c.iter().rev().fold(0.0, |sum, c| sum * t + c.high);
+    Point2::new(at(&polynomial.x), at(&polynomial.z))
 }
 
 /// Returns the distance of two stations \[mm\].

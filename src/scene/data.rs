@@ -14,7 +14,7 @@ use crate::search::{Position, Roll};
 use crate::separation::Method;
 
 /// A scene: a wheel on a rail or a wheelset on a track, the questions about it, and the files to write.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Title for pictures and file headers.

@@ -1,6 +1,8 @@
 //! Contact geometry of a wheelset over its lateral displacement, in the terms of EN 15302: Δr, Δ tan γ, places of contact, roll,
 //! and the figures that are taken from them.
 
+use nalgebra::Point2;
+
 use super::position::{Position, Roll};
 use super::sweep::{Conicity, Equivalent, NoConicity};
 use super::touch::{Contact, Selection};
@@ -8,7 +10,7 @@ use super::wheelset::{WheelsetOnTrack, WheelsetTouch};
 use crate::error::Result;
 use crate::numerics::interval::Interval;
 use crate::placement::Pair;
-use crate::profile::trace;
+use crate::profile::points_along;
 
 /// Amplitude \[mm\] at which the equivalent conicity is stated.
 pub const AMPLITUDE: f64 = 3.0;
@@ -205,13 +207,13 @@ pub fn active_faces(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> 
 
 /// Returns x of the flange's face on the wheel profile \[mm\], 10 mm below the running circle: the place nearest to the tread.
 fn active_face(pair: &Pair) -> Option<f64> {
-    let marks = trace(pair.wheel(), FACE_MARKS);
-    let crossing = |ends: &[crate::profile::Mark]| {
-        let [a, b] = [ends[0].station, ends[1].station];
-        let [from, to] = [a.z + FACE_HEIGHT, b.z + FACE_HEIGHT];
+    let points = points_along(pair.wheel(), FACE_MARKS);
+    let crossing = |ends: &[Point2<f64>]| {
+        let [a, b] = [ends[0], ends[1]];
+        let [from, to] = [a.y + FACE_HEIGHT, b.y + FACE_HEIGHT];
         (from < 0.0 && to >= 0.0).then(|| a.x - from / (to - from) * (b.x - a.x))
     };
-    marks.windows(2).filter_map(crossing).filter(|x| *x < 0.0).max_by(f64::total_cmp)
+    points.windows(2).filter_map(crossing).filter(|x| *x < 0.0).max_by(f64::total_cmp)
 }
 
 #[cfg(test)]

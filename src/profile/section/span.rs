@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use super::curve::PolynomialBranch;
 use super::turned::seen_from;
 use crate::numerics::interval::Interval;
-use crate::numerics::polynomial::{derivative, exact_value, range};
+use crate::numerics::polynomial::{derivative, exact_coefficients, range};
 use crate::numerics::twice::Twice;
 use crate::profile::chain::Profile;
 use crate::profile::polynomial::Polynomial;
@@ -55,7 +55,9 @@ impl PolynomialSpan {
         let (run, rise) = (range(&along, t), range(&across, t));
         let spread = (run.low > 0.0).then(|| rise.quotient(run));
         Self {
-            ends: t.ends().map(|t| [&polynomial.x, &polynomial.z].map(|c| exact_value(c, t.into()))),
+            ends: t.ends().map(|t| {
+                [&polynomial.x, &polynomial.z].map(|c| exact_coefficients(c, t.into())).map(|[at]| at)
+            }),
             middle: [cos, sin],
             spread: spread.filter(|spread| spread.magnitude() <= 1.0),
             polynomial: polynomial.clone(),

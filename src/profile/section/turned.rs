@@ -1,7 +1,7 @@
 //! Turns a polynomial segment into a frame, and finds the parts of it that face the other body.
 
 use crate::numerics::interval::Interval;
-use crate::numerics::polynomial::{derivative, exact_slope, exact_value, range, recentred, value};
+use crate::numerics::polynomial::{derivative, exact_coefficients, range, recentred, value};
 use crate::numerics::roots::bracketed;
 use crate::numerics::twice::Twice;
 use crate::profile::polynomial::{Polynomial, turned};
@@ -91,13 +91,7 @@ pub(super) fn seen_from_own_point(polynomial: &Polynomial, origin: Twice) -> ([V
 
 /// Returns the station of a segment, in profile axes, at a parameter in twice the working precision.
 pub(super) fn station_at(polynomial: &Polynomial, t: Twice) -> Station {
-    let (x, z) = (&polynomial.x, &polynomial.z);
-    let (dx, dz) = (exact_slope(x, t), exact_slope(z, t));
+    let [[x, dx], [z, dz]] = [&polynomial.x, &polynomial.z].map(|c| exact_coefficients(c, t));
     let norm = (dx * dx + dz * dz).sqrt();
-    Station {
-        x: exact_value(x, t).into(),
-        z: exact_value(z, t).into(),
-        cos: (dx / norm).into(),
-        sin: (dz / norm).into(),
-    }
+    Station { x: x.into(), z: z.into(), cos: (dx / norm).into(), sin: (dz / norm).into() }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
+use wheelrail::case::OutputFormat;
 
 const BODIES: &str =
     "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n";
@@ -273,4 +274,16 @@ fn check_measures_the_normal_gap_of_grids_over_the_rails_surface() {
         let aligned = aligned.and_then(|rest| rest.split(' ').next()?.parse::<usize>().ok());
         assert!(aligned.is_some_and(|aligned| aligned > 3), "{name}: {said}");
     }
+}
+
+#[test]
+fn the_template_names_the_formats_that_are_not_written_unasked() {
+    let sentence = include_str!("../../src/init.toml").split_once("without it all but ").unwrap().1;
+    let named: Vec<&str> = sentence.lines().next().unwrap().split('"').skip(1).step_by(2).collect();
+    let others: Vec<String> = OutputFormat::ALL
+        .iter()
+        .filter(|format| !format.unasked())
+        .map(|format| serde_json::to_value(format).unwrap().as_str().unwrap().to_owned())
+        .collect();
+    assert_eq!(named, others);
 }

@@ -1,7 +1,7 @@
 //! Intervals of noise and of repeats.
 
 use super::*;
-use crate::measured::noise::{Deviates, POINT_STEP, Remeasured};
+use wheelrail::measured::noise::{Deviates, POINT_STEP, Remeasured};
 
 const SIGMA: f64 = 0.02;
 

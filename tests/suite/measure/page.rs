@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn the_page_lists_every_column_and_alignment() {
-    let page = include_str!("../../docs/measures.md");
+    let page = include_str!("../../../src/docs/measures.md");
     for quantity in Quantity::ALL {
         assert!(page.contains(&format!("`{}`", quantity.key())), "{quantity:?}");
         assert!(quantity.key().ends_with(&quantity.unit().replace('%', "percent")), "{quantity:?}");

@@ -4,11 +4,10 @@ mod page;
 mod rail;
 mod spread;
 
-use super::curve::MarkedCurve;
-use super::*;
-use crate::error::Result;
-use crate::measured::{self, CurveKind};
-use crate::profile::{Arc, Profile, Segment, Side, Station, standards, trace};
+use wheelrail::error::Result;
+use wheelrail::measure::*;
+use wheelrail::measured::{self, CurveKind};
+use wheelrail::profile::{Arc, Profile, Section, Segment, Side, Station, standards, trace};
 
 /// Accuracy \[mm\] to which known wear has to be recovered.
 const RECOVERED: f64 = 0.01;
@@ -147,10 +146,8 @@ fn hollow_wear_is_the_depth_below_the_field_side() -> Result<()> {
         &MeasureOptions::default(),
     )?;
     // The highest and the lowest place of the same heights, over points every 0.01 mm.
-    let height = |x: f64| {
-        let lowest = MarkedCurve::new(&nominal).at_x(x).iter().map(|at| at.z).fold(f64::INFINITY, f64::min);
-        lowest + bump(x, [-25.0, 40.0], 3.0)
-    };
+    let section = Section::own_axes(&nominal, Side::Wheel);
+    let height = |x: f64| section.height(x) + bump(x, [-25.0, 40.0], 3.0);
     let (mut top, mut rise) = (f64::NEG_INFINITY, 0.0f64);
     for k in -250..590 {
         let z = height(f64::from(k) * 0.1);
@@ -334,7 +331,7 @@ fn instruments_have_the_same_values() -> Result<()> {
     let Some(contact) = std::env::var_os("WHEELRAIL_CONTACT") else { return Ok(()) };
     let profiles = std::path::Path::new(&contact).join("testbank/profiles");
     for (file, expected) in INSTRUMENTS {
-        let bytes = crate::files::read_bytes(&profiles.join(file), measured::LARGEST_FILE)?;
+        let bytes = wheelrail::files::read_bytes(&profiles.join(file), measured::LARGEST_FILE)?;
         let curve =
             measured::Options { curve: Some(CurveKind::Interpolation), ..measured::Options::default() };
         let read = measured::profile(file, &bytes, Side::Wheel, &curve)?.profile;
