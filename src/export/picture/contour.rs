@@ -1,9 +1,10 @@
 //! Finds lines of equal separation, by marching squares with linear interpolation along the grid's edges.
 
-use std::collections::HashMap;
+/// An edge of the grid: twice its lower node, and one more if it runs along ξ.
+type CellEdge = usize;
 
-/// An edge of the grid: its lower node, and whether it runs along ξ.
-type CellEdge = (usize, bool);
+/// A piece of a line inside a cell, from edge to edge, and whether the line has been followed over it.
+type Link = (CellEdge, CellEdge, bool);
 
 /// A function on the nodes of a rectangular grid, at `i * eta.len() + j`.
 #[derive(Debug, Clone, Copy)]
@@ -20,62 +21,62 @@ impl Nodes<'_> {
     /// Returns the lines on which the function equals `level`, as polylines in (ξ, η). A closed line ends where it begins.
     /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes.
     pub fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
-        let mut links: HashMap<CellEdge, Vec<CellEdge>> = HashMap::new();
+        let n = self.eta.len();
+        let mut links: Vec<Link> = Vec::new();
         for i in 1..self.xi.len() {
-            for j in 1..self.eta.len() {
-                for [a, b] in self.segments(i - 1, j - 1, level).into_iter().flatten() {
-                    links.entry(a).or_default().push(b);
-                    links.entry(b).or_default().push(a);
+            let [low, high] = [&self.values[(i - 1) * n..i * n], &self.values[i * n..(i + 1) * n]];
+            for j in 1..n {
+                // The corners are counter-clockwise in (ξ, η).
+                let corners = [low[j - 1], high[j - 1], high[j], low[j]];
+                let [a, b, c, d] = corners;
+                let above = [a > level, b > level, c > level, d > level];
+                if above == [true; 4] || above == [false; 4] || corners.iter().any(|value| value.is_nan()) {
+                    continue;
                 }
+                let joined = self.joined((i - 1) * n + j - 1, corners, above, level);
+                links.extend(joined.into_iter().flatten().flat_map(|[a, b]| [(a, b, false), (b, a, false)]));
             }
         }
-        // Open lines come first, from their ends; the others are closed. They are sorted, so that every run writes the same
-        // file.
-        let mut starts: Vec<CellEdge> = links.keys().copied().collect();
-        starts.sort_by_key(|edge| (links[edge].len(), *edge));
-        starts.into_iter().filter_map(|start| self.chain(&mut links, start, level)).collect()
+        links.sort_by_key(|link| link.0);
+        // Open lines come first, from their ends, which have one link; the others are closed. They are sorted, so that every run
+        // writes the same file.
+        let of_one = |edges: &[Link]| (edges.len(), edges[0].0);
+        let mut starts: Vec<(usize, CellEdge)> = links.chunk_by(|a, b| a.0 == b.0).map(of_one).collect();
+        starts.sort_unstable();
+        starts.into_iter().filter_map(|(_, start)| self.chain(&mut links, start, level)).collect()
     }
 
-    /// Returns the pieces of the line inside the cell whose lowest node is (i, j): none, one or, on a saddle,
-    /// two.
-    fn segments(&self, i: usize, j: usize, level: f64) -> [Option<[CellEdge; 2]>; 2] {
+    /// Returns the pieces of the line inside the cell with this lowest node, whose corners are not all on one side: one or, on a
+    /// saddle, two.
+    fn joined(
+        &self,
+        node: usize,
+        corners: [f64; 4],
+        above: [bool; 4],
+        level: f64,
+    ) -> [Option<[CellEdge; 2]>; 2] {
         let n = self.eta.len();
-        let node = i * n + j;
-        // The corners are counter-clockwise in (ξ, η).
-        let corners = [node, node + n, node + n + 1, node + 1].map(|k| self.values[k]);
-        if corners.iter().any(|value| value.is_nan()) {
-            return [None; 2];
-        }
-        let above = corners.map(|value| value > level);
-        let edges: [CellEdge; 4] = [(node, true), (node + n, false), (node + 1, true), (node, false)];
+        let edges: [CellEdge; 4] = [2 * node + 1, 2 * (node + n), 2 * (node + 1) + 1, 2 * node];
         let mut crossed = (0..4).filter(|&k| above[k] != above[(k + 1) % 4]);
         match [crossed.next(), crossed.next(), crossed.next(), crossed.next()] {
             [Some(a), Some(b), None, _] => [Some([edges[a], edges[b]]), None],
             // On a saddle the mean of the corners decides which opposite corners are joined.
-            [Some(_), Some(_), Some(_), Some(_)] => {
-                if (corners.iter().sum::<f64>() / 4.0 > level) == above[0] {
-                    [Some([edges[0], edges[1]]), Some([edges[2], edges[3]])]
-                } else {
-                    [Some([edges[3], edges[0]]), Some([edges[1], edges[2]])]
-                }
+            _ if (corners.iter().sum::<f64>() / 4.0 > level) == above[0] => {
+                [Some([edges[0], edges[1]]), Some([edges[2], edges[3]])]
             }
-            _ => [None; 2],
+            _ => [Some([edges[3], edges[0]]), Some([edges[1], edges[2]])],
         }
     }
 
-    /// Follows the links from `start` to their end, and removes them.
-    fn chain(
-        &self,
-        links: &mut HashMap<CellEdge, Vec<CellEdge>>,
-        start: CellEdge,
-        level: f64,
-    ) -> Option<Vec<[f64; 2]>> {
+    /// Follows the links, sorted by their first edges, from `start` to their end.
+    fn chain(&self, links: &mut [Link], start: CellEdge, level: f64) -> Option<Vec<[f64; 2]>> {
         let mut line = vec![self.crossing(start, level)];
         let mut here = start;
-        while let Some(next) = links.get_mut(&here).and_then(Vec::pop) {
-            let back = links.entry(next).or_default();
-            if let Some(k) = back.iter().position(|edge| *edge == here) {
-                back.swap_remove(k);
+        while let Some(link) = of_edge(links, here).iter_mut().rfind(|link| !link.2) {
+            link.2 = true;
+            let next = link.1;
+            if let Some(back) = of_edge(links, next).iter_mut().find(|link| !link.2 && link.1 == here) {
+                back.2 = true;
             }
             line.push(self.crossing(next, level));
             here = next;
@@ -83,8 +84,8 @@ impl Nodes<'_> {
         (line.len() > 1).then_some(line)
     }
 
-    fn crossing(&self, (node, along_xi): CellEdge, level: f64) -> [f64; 2] {
-        let n = self.eta.len();
+    fn crossing(&self, edge: CellEdge, level: f64) -> [f64; 2] {
+        let (n, node, along_xi) = (self.eta.len(), edge / 2, edge % 2 == 1);
         let (i, j) = (node / n, node % n);
         let other = if along_xi { node + n } else { node + 1 };
         let (a, b) = (self.values[node], self.values[other]);
@@ -95,6 +96,13 @@ impl Nodes<'_> {
             [self.xi[i], self.eta[j] + t * (self.eta[j + 1] - self.eta[j])]
         }
     }
+}
+
+/// Returns the links of an edge, one for each of its cells; they are sorted by their first edges.
+fn of_edge(links: &mut [Link], edge: CellEdge) -> &mut [Link] {
+    let begin = links.partition_point(|link| link.0 < edge);
+    let count = links[begin..].iter().take_while(|link| link.0 == edge).count();
+    &mut links[begin..begin + count]
 }
 
 #[cfg(test)]
