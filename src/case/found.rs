@@ -10,8 +10,8 @@ pub struct Found {
     /// The side of a wheelset, whose left one's axes are mirrored; `None` of a single wheel.
     #[serde(serialize_with = "named")]
     pub side: Option<TrackSide>,
-    /// Height at first touch \[mm\], + up: of a wheelset's centre above R over the top of rail, of a single wheel's
-    /// profile origin over the rail's.
+    /// Height at first touch \[mm\], + up: of a wheelset's centre above R, the right-hand wheel's, over the top of rail, of a single
+    /// wheel's profile origin over the rail's.
     pub height_mm: f64,
     /// Roll \[rad\], solved or given.
     pub roll_rad: f64,

@@ -51,7 +51,7 @@ pub struct SweepRow {
     pub side: TrackSide,
     /// Number of the contact on its side, from 0, by ascending gap.
     pub number: usize,
-    /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up.
+    /// Height \[mm\] of the axle's middle above R, the right-hand wheel's, over the top of rail when this side touches, + up.
     pub z: f64,
     /// The contact, in the axes of its side.
     pub contact: Contact,

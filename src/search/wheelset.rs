@@ -146,7 +146,7 @@ impl LowestPlaces {
 /// First touch of one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SideTouch<'a> {
-    /// Height \[mm\] of the axle's middle above R over the top of rail when this side touches, + up: −0.18
+    /// Height \[mm\] of the axle's middle above R, the right-hand wheel's, over the top of rail when this side touches, + up: −0.18
     /// for a centred S1002 on 60E1 at 1:40. Equal on both sides if the roll is solved.
     pub z: f64,
     /// Contacts of the side, in its own axes.

@@ -224,13 +224,18 @@ impl Branch {
         (view, span): (&sync::Arc<View>, usize),
         contact: Option<Twice>,
     ) -> Vec<Self> {
+        let faces = view.spans[span].faces(&view.frame);
+        if faces == Some(false) && contact.is_none() {
+            return Vec::new();
+        }
         let (exact, range) = match contact {
             Some(origin) => seen_from_own_point(polynomial, origin),
             None => seen_from(polynomial, &view.frame),
         };
         let whole = PolynomialBranch::new(exact, range);
         let kind = if contact.is_some() { BranchKind::Contact } else { BranchKind::Plain };
-        let mut parts = rising_parts([&whole.xi, &whole.zeta], range);
+        let rising = || rising_parts([&whole.xi, &whole.zeta], range);
+        let mut parts = if faces == Some(true) { vec![range] } else { rising() };
         parts.retain(|t| kind == BranchKind::Plain || t.contains(0.0));
         let branch = |t: Interval, whole: PolynomialBranch| {
             let xi = t.map(|t| value(&whole.xi, t));

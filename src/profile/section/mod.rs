@@ -219,25 +219,26 @@ fn branches(
     let mut spans = 0..view.spans.len();
     for (index, segment) in profile.segments().iter().enumerate() {
         let here = contact.filter(|point| point.segment == index);
-        let seen = match &segment.shape {
-            Shape::Arc(arc) => Branch::of_arc(index, arc, frame, here.is_some()).into_iter().collect(),
+        let (first, joint) =
+            (branches.len(), branches.last().filter(|_| goes_on).map(|before| before.xi.high));
+        match &segment.shape {
+            Shape::Arc(arc) => branches.extend(Branch::of_arc(index, arc, frame, here.is_some())),
             Shape::Polynomial(polynomial) => {
                 let Some(span) = spans.next() else { break };
                 if here.is_none() && view.spans[span].slopes(frame).is_some() {
-                    let joint = branches.last().filter(|_| goes_on).map(|before| before.xi.high);
                     branches.push(Branch::of_span(index, (view, span), joint));
                     goes_on = true;
                     continue;
                 }
-                Branch::of_polynomial(index, polynomial, (view, span), here.map(|point| point.parameter))
+                let parameter = here.map(|point| point.parameter);
+                branches.extend(Branch::of_polynomial(index, polynomial, (view, span), parameter));
             }
-        };
-        for mut branch in seen {
-            if let Some(before) = branches.last().filter(|_| goes_on && branch.begins_segment) {
-                branch.begin_at(before.xi.high);
-            }
-            goes_on = false;
-            branches.push(branch);
+        }
+        // Further parts of a segment begin inside it.
+        if let (Some(joint), Some(branch)) =
+            (joint, branches.get_mut(first).filter(|branch| branch.begins_segment))
+        {
+            branch.begin_at(joint);
         }
         goes_on = match branches.last().filter(|branch| branch.segment == index) {
             Some(branch) => branch.ends_segment,

@@ -71,11 +71,22 @@ impl PolynomialSpan {
         [x * frame.cos + z * frame.sin, z * frame.cos - x * frame.sin]
     }
 
-    /// Returns bounds of ζ′ in a frame; `None` where it may be steeper than [`STEEPEST`], or face away.
-    pub(super) fn slopes(&self, frame: &Station) -> Option<Interval> {
+    /// Tells whether the segment faces the other body all along, or nowhere, by more than rounding; `None` where neither is sure.
+    pub(super) fn faces(&self, frame: &Station) -> Option<bool> {
+        let [[a, _], [b, _]] = self.extremes(frame)?;
+        if a.min(b) > WIDENING { Some(true) } else { (a.max(b) < -WIDENING).then_some(false) }
+    }
+
+    /// Returns the two directions, as run and rise in a frame, between which all others lie; `None` beyond ±45° from the middle.
+    fn extremes(&self, frame: &Station) -> Option<[[f64; 2]; 2]> {
         let [cos, sin] = self.middle;
         let (cos, sin) = (cos * frame.cos + sin * frame.sin, sin * frame.cos - cos * frame.sin);
-        let [low, high] = self.spread?.ends().map(|tangent| [cos - tangent * sin, sin + tangent * cos]);
+        Some(self.spread?.ends().map(|tangent| [cos - tangent * sin, sin + tangent * cos]))
+    }
+
+    /// Returns bounds of ζ′ in a frame; `None` where it may be steeper than [`STEEPEST`], or face away.
+    pub(super) fn slopes(&self, frame: &Station) -> Option<Interval> {
+        let [low, high] = self.extremes(frame)?;
         let gentle = |[run, rise]: [f64; 2]| run > 0.0 && rise.abs() <= STEEPEST * run;
         if !gentle(low) || !gentle(high) {
             return None;
