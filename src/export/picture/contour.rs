@@ -4,7 +4,7 @@
 type CellEdge = usize;
 
 /// A piece of a line inside a cell, from edge to edge, and whether the line has been followed over it.
-type Link = (CellEdge, CellEdge, bool);
+type CellLink = (CellEdge, CellEdge, bool);
 
 /// A function on the nodes of a rectangular grid, at `i * eta.len() + j`.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,7 @@ impl Nodes<'_> {
     /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes.
     pub fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let n = self.eta.len();
-        let mut links: Vec<Link> = Vec::new();
+        let mut links: Vec<CellLink> = Vec::new();
         for i in 1..self.xi.len() {
             let [low, high] = [&self.values[(i - 1) * n..i * n], &self.values[i * n..(i + 1) * n]];
             for j in 1..n {
@@ -40,7 +40,7 @@ impl Nodes<'_> {
         links.sort_by_key(|link| link.0);
         // Open lines come first, from their ends, which have one link; the others are closed. They are sorted, so that every run
         // writes the same file.
-        let of_one = |edges: &[Link]| (edges.len(), edges[0].0);
+        let of_one = |edges: &[CellLink]| (edges.len(), edges[0].0);
         let mut starts: Vec<(usize, CellEdge)> = links.chunk_by(|a, b| a.0 == b.0).map(of_one).collect();
         starts.sort_unstable();
         starts.into_iter().filter_map(|(_, start)| self.chain(&mut links, start, level)).collect()
@@ -69,7 +69,7 @@ impl Nodes<'_> {
     }
 
     /// Follows the links, sorted by their first edges, from `start` to their end.
-    fn chain(&self, links: &mut [Link], start: CellEdge, level: f64) -> Option<Vec<[f64; 2]>> {
+    fn chain(&self, links: &mut [CellLink], start: CellEdge, level: f64) -> Option<Vec<[f64; 2]>> {
         let mut line = vec![self.crossing(start, level)];
         let mut here = start;
         while let Some(link) = of_edge(links, here).iter_mut().rfind(|link| !link.2) {
@@ -99,7 +99,7 @@ impl Nodes<'_> {
 }
 
 /// Returns the links of an edge, one for each of its cells; they are sorted by their first edges.
-fn of_edge(links: &mut [Link], edge: CellEdge) -> &mut [Link] {
+fn of_edge(links: &mut [CellLink], edge: CellEdge) -> &mut [CellLink] {
     let begin = links.partition_point(|link| link.0 < edge);
     let count = links[begin..].iter().take_while(|link| link.0 == edge).count();
     &mut links[begin..begin + count]
