@@ -8,7 +8,7 @@ use crate::placement::{Pair, Placement};
 use crate::profile::{last_groove, points_along};
 use crate::search::{Contact, SweepRow, TrackSide};
 
-/// Distance of the marks \[mm\] along a profile: over a flange's face of 70° the lift is off by less than 0.15 mm.
+/// Distance of the points \[mm\] along a profile: over a flange's face of 70° the lift is off by less than 0.15 mm.
 const STEP: f64 = 0.1;
 
 /// Depth of the lowest point below the tread from which on it is a flange's tip \[mm\]; trams have 15.

@@ -78,6 +78,7 @@ pub use march_table::{
 pub use march_view::{DrawnMarch, ListedEvents};
 pub use measure_view::measures_page;
 pub use places::{approach_under_load, contacts, find};
+pub(crate) use polylines::polyline;
 pub use pressure::{OnGrid, PartPressure};
 pub use profile_view::{about_profile, profile_picture};
 pub use run::{Part, Run, SILENT, Tell};

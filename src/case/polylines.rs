@@ -22,8 +22,8 @@ pub(super) fn pairs(profiles: &Profiles) -> Vec<PagePair> {
     profiles.sides().map(|(_, side)| pair(side)).collect()
 }
 
-/// Gives a profile as a polyline; one of very many points is thinned.
-fn polyline(profile: &Profile) -> PageProfile {
+/// Gives a profile as points at most [`STEP`] apart; one of very many points is thinned.
+pub(crate) fn polyline(profile: &Profile) -> PageProfile {
     let points = thinned(&points_along(profile, STEP), MOST_POINTS);
     let (x, z) = points.iter().map(|at| (at.x, at.y)).unzip();
     PageProfile { name: profile.name.clone(), x, z }

@@ -7,11 +7,10 @@ use super::pair::{self, FleetRow, numbers, wheelset};
 use super::part::{self, FleetPart};
 use super::profiles::Shelf;
 use super::tally::{FleetTally, WorstPair, rails};
-use crate::case::{Case, DoubtSet, SweepColumns, about_bodies, sweep_page};
+use crate::case::{Case, DoubtSet, SweepColumns, about_bodies, polyline, sweep_page};
 use crate::error::{Error, Result};
 use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
 use crate::files::{KeptFolder, NewFile};
-use crate::profile::{Profile, points_along};
 use crate::scene;
 use crate::search::{Conicity, ONE_CONTACT, ParallelSweep, Position, Selection};
 
@@ -25,8 +24,6 @@ const NAMES: [&str; 7] =
 /// Positions of a worst pair's page to either side, and their distance \[mm\].
 const DRAWN: i32 = 80;
 const STEP: f64 = 0.1;
-/// Distance of the points of the rail's outline \[mm\].
-const OUTLINE: f64 = 0.5;
 
 /// Writes the table, the summary and the page from the parts, and the pages of the worst pairs from their profiles. Returns the number of
 /// pairs, of those with a conicity and of those with a finding.
@@ -163,15 +160,10 @@ fn worst_pages(fleet: &Listed, folder: &KeptFolder, worst: &[WorstPair]) -> Resu
         shelf.fill(fleet, &Pairs { wheelsets: wheelset..wheelset + 1, sections: section..section + 1 });
         let case = pair::case(fleet, &shelf, pair.number)?;
         folder.write(&worst_name(k), &swept(&case, pair)?)?;
-        rail.get_or_insert_with(|| outline(case.profiles().right.pair.rail()));
+        rail.get_or_insert_with(|| polyline(case.profiles().right.pair.rail()));
     }
     folder.remove(|name| !(0..worst.len()).any(|k| worst_name(k) == name))?;
     Ok(rail)
-}
-
-fn outline(rail: &Profile) -> PageProfile {
-    let (x, z) = points_along(rail, OUTLINE).iter().map(|at| (at.x, at.y)).unzip();
-    PageProfile { name: rail.name.clone(), x, z }
 }
 
 /// Returns the page of a pair's sweep.

@@ -111,7 +111,9 @@ pub fn exact_values<const N: usize>(c: &[Twice], t: &[Twice; N]) -> ([Twice; N],
     (exact, slope)
 }
 
-/// Computes the first N coefficients about t, p(t), p′(t), p″(t)/2, …, in twice the working precision by Horner's rule.
+/// Computes the first N coefficients of p in powers of the distance from t: p(t), p′(t), p″(t)/2, …, in twice the working precision.
+///
+/// Method: Horner's rule. Accuracy: about 1e-31 of Σ |c_k t^k|, and of its derivatives.
 pub fn exact_coefficients<const N: usize>(c: &[Twice], t: Twice) -> [Twice; N] {
     let mut about = [Twice::ZERO; N];
     for &c in c.iter().rev() {

@@ -166,8 +166,8 @@ fn positive(place: &str, value: f64) -> Result<f64> {
     Err(Error::new(place, value.to_string(), "a positive number", "give it in mm"))
 }
 
-/// Distance \[mm\] of the marks by which a groove, some 40 mm wide, is told from a head.
-const GROOVE_MARKS: f64 = 1.0;
+/// Distance \[mm\] of the points by which a groove, some 40 mm wide, is told from a head.
+const GROOVE_STEP: f64 = 1.0;
 
 /// The head that wheels run on.
 struct RunningHead {
@@ -178,7 +178,7 @@ struct RunningHead {
 
 impl RunningHead {
     fn of(rail: &Profile) -> Self {
-        let points = points_along(rail, GROOVE_MARKS);
+        let points = points_along(rail, GROOVE_STEP);
         let heights: Vec<f64> = points.iter().map(|at| at.y).collect();
         let from = last_groove(&heights).map_or(f64::NEG_INFINITY, |bottom| points[bottom].x);
         Self { section: Section::own_axes(rail, Side::Rail), from }

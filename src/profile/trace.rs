@@ -78,23 +78,22 @@ pub fn trace(profile: &Profile, step: f64) -> Vec<Mark> {
     marks
 }
 
-/// Returns the points \[mm\] of the marks of [`trace`], where neither tangents nor lengths are needed.
-///
-/// Accuracy: the working precision.
+/// Returns the points \[mm\] of the marks of [`trace`], for those who need neither tangents nor lengths; on polynomials to the
+/// working precision.
 pub fn points_along(profile: &Profile, step: f64) -> Vec<Point2<f64>> {
     let step = bounded(step, profile);
-    let of = |segment: &Segment| {
+    let along = |segment: &Segment| {
         let shares = shares(segment, step);
-        let share = |k: usize| k as f64 / shares as f64;
-        let points: Vec<Point2<f64>> = match &segment.shape {
-            Shape::Arc(arc) => {
-                (0..=shares).map(|k| arc.station_at(share(k))).map(|at| Point2::new(at.x, at.z)).collect()
+        let at = |k: usize| match &segment.shape {
+            Shape::Polynomial(polynomial) => point(polynomial, k as f64 / shares as f64),
+            Shape::Arc(_) => {
+                let (Station { x, z, .. }, _) = at_share(segment, k as f64 / shares as f64);
+                Point2::new(x, z)
             }
-            Shape::Polynomial(polynomial) => (0..=shares).map(|k| point(polynomial, share(k))).collect(),
         };
-        points
+        (0..=shares).map(at).collect::<Vec<_>>()
     };
-    profile.segments().iter().flat_map(of).collect()
+    profile.segments().iter().flat_map(along).collect()
 }
 
 /// Finds the foot of a point \[mm\] on a trace. The search begins at mark `hint`: for points in a row, pass the mark found
@@ -137,7 +136,7 @@ pub fn beside(marks: &[Mark], [x, z]: [f64; 2], hint: usize) -> Option<Beside> {
 /// Number of marks beyond the nearest one so far over which the search goes on.
 const LOOKED_ON: usize = 16;
 
-/// Returns a step \[mm\], or the least one where it is below that.
+/// Returns a step \[mm\], but at least that of [`MOST_STEPS`].
 fn bounded(step: f64, profile: &Profile) -> f64 {
     let length: f64 = profile.segments().iter().map(segment_length).sum();
     step.max(length / MOST_STEPS)

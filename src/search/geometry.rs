@@ -25,8 +25,8 @@ const STEP: f64 = 0.1;
 const GAUGE_DEPTH: f64 = 14.0;
 /// Depth below the running circle at which the distance SR of the active faces is measured \[mm\].
 const FACE_HEIGHT: f64 = 10.0;
-/// Distance of the marks \[mm\] between which the active face is found: chords of a 13 mm flange root are within 0.03 µm of it.
-const FACE_MARKS: f64 = 0.05;
+/// Distance of the points \[mm\] between which the active face is found: chords of a 13 mm flange root are within 0.03 µm of it.
+const FACE_STEP: f64 = 0.05;
 
 /// Contact geometry at one lateral displacement, without yaw. Arrays are \[left, right\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -207,7 +207,7 @@ pub fn active_faces(system: &WheelsetOnTrack, pairs: [&Pair; 2]) -> Option<f64> 
 
 /// Returns x of the flange's face on the wheel profile \[mm\], 10 mm below the running circle: the place nearest to the tread.
 fn active_face(pair: &Pair) -> Option<f64> {
-    let points = points_along(pair.wheel(), FACE_MARKS);
+    let points = points_along(pair.wheel(), FACE_STEP);
     let crossing = |ends: &[Point2<f64>]| {
         let [a, b] = [ends[0], ends[1]];
         let [from, to] = [a.y + FACE_HEIGHT, b.y + FACE_HEIGHT];

@@ -9,6 +9,10 @@ use wheelrail::{Interval, Result, Window};
 /// E* of steel \[N/mm²\].
 const STEEL: f64 = 113_932.0;
 
+/// Largest violation of contact's conditions, as a share of δ, to which pressures are solved where sums are compared: the sums
+/// themselves are right to 1e-14.
+const WITHIN: f64 = 5e-13;
+
 /// Cells over the box around the overlap of a paraboloid about `centre`, with its ellipse.
 fn paraboloid(
     [a, b]: [f64; 2],
@@ -146,27 +150,27 @@ fn influence(away: [f64; 2], step: [f64; 2]) -> f64 {
     part(x[1], y) - part(x[0], y) + part(y[1], x) - part(y[0], x)
 }
 
-/// s + u = δ where anything presses and s + u ≥ δ elsewhere, with u summed over all cells one by one: of smooth overlaps, of rough ones,
-/// of single cells and rows, of square cells and flat ones.
+/// s + u = δ where anything presses and s + u ≥ δ elsewhere, with u summed over all cells one by one: of smooth overlaps that press
+/// everywhere and of rough ones that press here and there, on many cells, one, or a row of them, square and flat.
 #[test]
 fn pressures_close_the_overlap_by_direct_sums() -> Result<()> {
-    for (count, step) in
-        [([32, 16], [0.3, 0.5]), ([7, 11], [1e-2, 1.0]), ([1, 1], [0.2, 0.1]), ([1, 30], [2.0, 0.1])]
-    {
+    let shapes =
+        [([32, 16], [0.3, 0.5]), ([7, 11], [1e-2, 1.0]), ([1, 1], [0.2, 0.1]), ([1, 30], [2.0, 0.1])];
+    for ((count, step), rough) in shapes.into_iter().flat_map(|shape| [(shape, 1e-3), (shape, 1.2)]) {
         let (cells, approach) = (Cells { from: [0.0; 2], step, count }, 0.1);
         let all = count[0] * count[1];
-        let rough = |k: usize| ((k * k + 3 * k + 1) % 17) as f64 / 17.0;
-        let gaps: Vec<f64> = (0..all).map(|k| approach * 1.2 * rough(k)).collect();
-        let found = press(&[HalfSpace::new(cells, &gaps, approach)?.alone()], 1e-9, STEEL)?.swap_remove(0);
+        let gap = |k: usize| approach * rough * ((k * k + 3 * k + 1) % 17) as f64 / 17.0;
+        let gaps: Vec<f64> = (0..all).map(gap).collect();
+        let found = press(&[HalfSpace::new(cells, &gaps, approach)?.alone()], WITHIN, STEEL)?.swap_remove(0);
         let pressure = found.values();
-        assert!(pressure.iter().all(|p| *p >= 0.0) && found.load() > 0.0, "{count:?}");
+        assert!(pressure.iter().all(|p| *p >= 0.0) && found.load() > 0.0, "{count:?} {rough}");
         for (to, gap) in gaps.iter().enumerate() {
             let place = |k: usize| [k / count[1], k % count[1]].map(|i| i as f64);
             let away = |from: usize| [0, 1].map(|k| (place(to)[k] - place(from)[k]).abs());
             let each = pressure.iter().enumerate().map(|(from, p)| p * influence(away(from), step));
-            let open = gap + each.sum::<f64>() / (PI * STEEL) - approach;
-            let (least, most) = (-2e-9, if pressure[to] > 0.0 { 2e-9 } else { f64::INFINITY });
-            assert!((least..most).contains(&(open / approach)), "{count:?} {to}: {open:e}");
+            let open = (gap + each.sum::<f64>() / (PI * STEEL) - approach) / approach;
+            let most = if pressure[to] > 0.0 { 2.0 * WITHIN } else { f64::INFINITY };
+            assert!((-2.0 * WITHIN..most).contains(&open), "{count:?} {rough} {to}: {open:e}");
         }
     }
     Ok(())

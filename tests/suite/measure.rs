@@ -119,12 +119,8 @@ fn known_wear_of_a_wheel_is_recovered() -> Result<()> {
             assert!((tread - exact).abs() < RECOVERED, "{align:?} {degrees}: {tread} {exact} {measures:?}");
             assert!((most - 2.5).abs() < RECOVERED, "{align:?} {degrees}: {most}");
             let flange = value(&measures, Quantity::FlangeThickness);
-            let own = measure(
-                &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
-                Side::Wheel,
-                None,
-                &MeasureOptions::default(),
-            )?;
+            let unmoved = worn(&nominal, Side::Wheel, by, Station::AXES, |_| true);
+            let own = measure(&unmoved, Side::Wheel, None, &MeasureOptions::default())?;
             assert!(
                 (flange - value(&own, Quantity::FlangeThickness)).abs() < RECOVERED,
                 "{align:?}: {flange} {own:?}"
@@ -139,13 +135,9 @@ fn known_wear_of_a_wheel_is_recovered() -> Result<()> {
 fn hollow_wear_is_the_depth_below_the_field_side() -> Result<()> {
     let nominal = standards::wheel("S1002")?;
     let by = |at: Station| [0.0, bump(at.x, [-25.0, 40.0], 3.0)];
-    let measures = measure(
-        &worn(&nominal, Side::Wheel, by, Station::AXES, |_| true),
-        Side::Wheel,
-        None,
-        &MeasureOptions::default(),
-    )?;
-    // The highest and the lowest place of the same heights, over points every 0.01 mm.
+    let wheel = worn(&nominal, Side::Wheel, by, Station::AXES, |_| true);
+    let measures = measure(&wheel, Side::Wheel, None, &MeasureOptions::default())?;
+    // The highest and the lowest place of the same heights, over points every 0.1 mm.
     let section = Section::own_axes(&nominal, Side::Wheel);
     let height = |x: f64| section.height(x) + bump(x, [-25.0, 40.0], 3.0);
     let (mut top, mut rise) = (f64::NEG_INFINITY, 0.0f64);

@@ -3,8 +3,13 @@
 /// An edge of the grid: twice its lower node, and one more if it runs along ξ.
 type CellEdge = usize;
 
-/// A piece of a line inside a cell, from edge to edge, and whether the line has been followed over it.
-type CellLink = (CellEdge, CellEdge, bool);
+/// A piece of a line inside a cell, as it is met at one of its edges.
+struct CellLink {
+    from: CellEdge,
+    to: CellEdge,
+    /// Whether a line was followed over it.
+    followed: bool,
+}
 
 /// A function on the nodes of a rectangular grid, at `i * eta.len() + j`.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +24,8 @@ pub struct Nodes<'a> {
 
 impl Nodes<'_> {
     /// Returns the lines on which the function equals `level`, as polylines in (ξ, η). A closed line ends where it begins.
-    /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes.
+    /// Cells with an undefined corner have no lines. Cost: linear in the number of nodes, and n log n in that
+    /// of crossed edges.
     pub fn lines(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let n = self.eta.len();
         let mut links: Vec<CellLink> = Vec::new();
@@ -34,14 +40,15 @@ impl Nodes<'_> {
                     continue;
                 }
                 let joined = self.joined((i - 1) * n + j - 1, corners, above, level);
-                links.extend(joined.into_iter().flatten().flat_map(|[a, b]| [(a, b, false), (b, a, false)]));
+                let both_ways = joined.into_iter().flatten().flat_map(|[a, b]| [[a, b], [b, a]]);
+                links.extend(both_ways.map(|[from, to]| CellLink { from, to, followed: false }));
             }
         }
-        links.sort_by_key(|link| link.0);
+        links.sort_by_key(|link| link.from);
         // Open lines come first, from their ends, which have one link; the others are closed. They are sorted, so that every run
         // writes the same file.
-        let of_one = |edges: &[CellLink]| (edges.len(), edges[0].0);
-        let mut starts: Vec<(usize, CellEdge)> = links.chunk_by(|a, b| a.0 == b.0).map(of_one).collect();
+        let of_one_edge = links.chunk_by(|a, b| a.from == b.from);
+        let mut starts: Vec<(usize, CellEdge)> = of_one_edge.map(|own| (own.len(), own[0].from)).collect();
         starts.sort_unstable();
         starts.into_iter().filter_map(|(_, start)| self.chain(&mut links, start, level)).collect()
     }
@@ -68,15 +75,16 @@ impl Nodes<'_> {
         }
     }
 
-    /// Follows the links, sorted by their first edges, from `start` to their end.
+    /// Follows the links, which are in order of their edges, from `start` to their end; `None` where all were followed before.
     fn chain(&self, links: &mut [CellLink], start: CellEdge, level: f64) -> Option<Vec<[f64; 2]>> {
         let mut line = vec![self.crossing(start, level)];
         let mut here = start;
-        while let Some(link) = of_edge(links, here).iter_mut().rfind(|link| !link.2) {
-            link.2 = true;
-            let next = link.1;
-            if let Some(back) = of_edge(links, next).iter_mut().find(|link| !link.2 && link.1 == here) {
-                back.2 = true;
+        while let Some(link) = of_edge(links, here).iter_mut().rfind(|link| !link.followed) {
+            link.followed = true;
+            let next = link.to;
+            if let Some(back) = of_edge(links, next).iter_mut().find(|back| !back.followed && back.to == here)
+            {
+                back.followed = true;
             }
             line.push(self.crossing(next, level));
             here = next;
@@ -98,10 +106,10 @@ impl Nodes<'_> {
     }
 }
 
-/// Returns the links of an edge, one for each of its cells; they are sorted by their first edges.
+/// Returns the links that are met at an edge, one in each of its cells, out of all in order of their edges.
 fn of_edge(links: &mut [CellLink], edge: CellEdge) -> &mut [CellLink] {
-    let begin = links.partition_point(|link| link.0 < edge);
-    let count = links[begin..].iter().take_while(|link| link.0 == edge).count();
+    let begin = links.partition_point(|link| link.from < edge);
+    let count = links[begin..].iter().take_while(|link| link.from == edge).count();
     &mut links[begin..begin + count]
 }
 

@@ -1,7 +1,8 @@
 //! Finds the abscissae where two branches are parallel, the stationary points of the gap between them, and where one branch is
 //! parallel to a line.
 
-use super::branch::{ArcBranch, Branch, BranchShape};
+use super::arc_branch::ArcBranch;
+use super::branch::{Branch, BranchShape};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, lanes};
 use crate::numerics::polynomial::{derivative, value};

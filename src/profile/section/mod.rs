@@ -1,5 +1,6 @@
 //! Profiles seen from a frame: the transformed profile ζ(ξ) of Report (4.4)–(4.8).
 
+mod arc_branch;
 mod between;
 mod branch;
 mod branches;
@@ -9,8 +10,9 @@ mod points;
 mod span;
 mod turned;
 
+pub use arc_branch::ArcBranch;
 pub use between::{parallel_to, stationary_points};
-pub use branch::{ArcBranch, Branch, BranchShape};
+pub use branch::{Branch, BranchShape};
 pub use branches::Branches;
 pub use curve::PolynomialBranch;
 pub use envelope::Piece;
@@ -219,8 +221,8 @@ fn branches(
     let mut spans = 0..view.spans.len();
     for (index, segment) in profile.segments().iter().enumerate() {
         let here = contact.filter(|point| point.segment == index);
-        let (first, joint) =
-            (branches.len(), branches.last().filter(|_| goes_on).map(|before| before.xi.high));
+        let first = branches.len();
+        let joint = branches.last().filter(|_| goes_on).map(|before| before.xi.high);
         match &segment.shape {
             Shape::Arc(arc) => branches.extend(Branch::of_arc(index, arc, frame, here.is_some())),
             Shape::Polynomial(polynomial) => {
@@ -234,9 +236,9 @@ fn branches(
                 branches.extend(Branch::of_polynomial(index, polynomial, (view, span), parameter));
             }
         }
-        // Further parts of a segment begin inside it.
-        if let (Some(joint), Some(branch)) =
-            (joint, branches.get_mut(first).filter(|branch| branch.begins_segment))
+        // Only the first part of a segment may go on from the branch before.
+        if let (Some(joint), Some(branch)) = (joint, branches.get_mut(first))
+            && branch.begins_segment
         {
             branch.begin_at(joint);
         }

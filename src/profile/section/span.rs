@@ -73,8 +73,9 @@ impl PolynomialSpan {
 
     /// Tells whether the segment faces the other body all along, or nowhere, by more than rounding; `None` where neither is sure.
     pub(super) fn faces(&self, frame: &Station) -> Option<bool> {
-        let [[a, _], [b, _]] = self.extremes(frame)?;
-        if a.min(b) > WIDENING { Some(true) } else { (a.max(b) < -WIDENING).then_some(false) }
+        let runs = self.extremes(frame)?.map(|[run, _]| run);
+        let all = |sign: f64| runs.iter().all(|run| sign * run > WIDENING);
+        if all(1.0) { Some(true) } else { all(-1.0).then_some(false) }
     }
 
     /// Returns the two directions, as run and rise in a frame, between which all others lie; `None` beyond ±45° from the middle.
@@ -151,7 +152,9 @@ impl Deref for TurnedPolynomial {
 
 #[cfg(test)]
 mod tests {
+    use super::super::turned::rising_parts;
     use super::super::{BranchShape, Section};
+    use super::*;
     use crate::profile::{Side, standards};
 
     /// In frames at points all over a wheel of polynomials: what is known of a span without its curve is that of its curve.
@@ -183,6 +186,37 @@ mod tests {
             }
         }
         assert!(compared >= 8, "only {compared} spans");
+        Ok(())
+    }
+
+    /// In frames all around wheels of polynomials, drawn and with noise: what surely faces the other body, or surely does not, is what
+    /// the turned curve says.
+    #[test]
+    fn what_faces_the_other_body_is_that_of_the_curve() -> crate::error::Result<()> {
+        let drawn = standards::wheel("S1002")?;
+        let points = crate::measured::write::sample(&drawn, 0.7)?.into_iter().enumerate();
+        let noisy: Vec<[f64; 2]> = points.map(|(k, [x, z])| [x, z + 0.02 * (k as f64 * 1.7).sin()]).collect();
+        let curve = Some(crate::measured::CurveKind::Interpolation);
+        let options = crate::measured::Options { curve, ..Default::default() };
+        let noisy = crate::measured::of_points("noisy", &noisy, Side::Wheel, &options)?.profile;
+        let mut seen = [0; 3];
+        for (profile, degrees) in [&drawn, &noisy].into_iter().flat_map(|p| (-180..180).map(move |k| (p, k)))
+        {
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            let frame = Station { x: 3.0, z: -2.0, cos, sin };
+            for span in &*PolynomialSpan::all(profile) {
+                let (exact, t) = seen_from(&span.polynomial, &frame);
+                let whole = PolynomialBranch::new(exact, t);
+                let parts = rising_parts([&whole.xi, &whole.zeta], t);
+                match span.faces(&frame) {
+                    Some(true) => assert_eq!(parts, [t], "{degrees}°"),
+                    Some(false) => assert_eq!(parts, [], "{degrees}°"),
+                    None => {}
+                }
+                seen[span.faces(&frame).map_or(2, usize::from)] += 1;
+            }
+        }
+        assert!(seen[0] > 10_000 && seen[1] > 10_000 && seen[2] < seen[0] / 4, "{seen:?}");
         Ok(())
     }
 }
