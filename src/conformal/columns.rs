@@ -15,8 +15,7 @@ use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
 use crate::numerics::nan_max;
 use crate::separation::{
-    ColumnPolynomial, Demand, EtaAxis, MOST_COEFFICIENTS, ROUNDING_LEVEL, SMALL_SHARE, SpanRun, interpolate,
-    mirror,
+    ColumnPolynomial, Demand, EtaAxis, MOST_COEFFICIENTS, ROUNDING_LEVEL, SMALL_SHARE, interpolate, mirror,
 };
 
 /// Number of columns of one block, which is the unit of work of a thread. Each block begins anew, so that any number of
@@ -199,8 +198,7 @@ impl<'g, 'a> BlockColumns<'g, 'a> {
         for range in self.axis.ranges(u) {
             match &fit {
                 Some(fit) => {
-                    let run = SpanRun { fit, u: &self.axis.u[range.clone()], out: &mut out[range] };
-                    self.arch.dispatch(run);
+                    self.arch.dispatch(fit.over(&self.axis.u[range.clone()], &mut out[range]));
                 }
                 None => {
                     for k in range {

@@ -35,7 +35,7 @@ pub(crate) mod wheel_surface;
 
 pub use axis::EtaAxis;
 pub(crate) use axis::mirror;
-pub(crate) use columns::horner::{ColumnPolynomial, MOST_COEFFICIENTS, SpanRun};
+pub(crate) use columns::horner::{ColumnPolynomial, MOST_COEFFICIENTS};
 pub(crate) use columns::skewed::{SMALL_SHARE, interpolate};
 pub(crate) use demand::ROUNDING_LEVEL;
 pub use demand::{Demand, FULL_PRECISION};

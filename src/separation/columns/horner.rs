@@ -34,36 +34,47 @@ impl ColumnPolynomial {
         let v = u - self.u0;
         v * polynomial::value(&self.c[..self.n], v)
     }
+
+    /// Its evaluation at a run of u \[mm²\].
+    pub fn over<'a>(&'a self, u: &'a [f64], out: &'a mut [f64]) -> SpanRun<'a> {
+        SpanRun { begin: [self.base, self.u0], c: &self.c[..self.n], u, out }
+    }
 }
 
 /// Work that is compiled for each number of coefficients, so that the compiler unrolls its innermost loop.
 pub trait PerDegree {
-    /// Does the work with N coefficients.
-    fn run<const N: usize>(self);
+    /// Does the work with n coefficients, at most N.
+    fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize);
 }
 
-/// Calls `work` compiled for n coefficients; n is at most [`MOST_COEFFICIENTS`].
+/// Calls `work` compiled for n coefficients; n is at most [`MOST_COEFFICIENTS`]. Without vectors, unrolled loops gain nothing.
 #[inline(always)]
-pub fn per_degree(n: usize, work: impl PerDegree) {
+pub fn per_degree<S: pulp::Simd>(simd: S, n: usize, work: impl PerDegree) {
+    if S::F64_LANES == 1 {
+        return work.run::<S, MOST_COEFFICIENTS>(simd, n);
+    }
     match n {
-        1 => work.run::<1>(),
-        2 => work.run::<2>(),
-        3 => work.run::<3>(),
-        4 => work.run::<4>(),
-        5 => work.run::<5>(),
-        6 => work.run::<6>(),
-        7 => work.run::<7>(),
-        8 => work.run::<8>(),
-        9 => work.run::<9>(),
-        10 => work.run::<10>(),
-        11 => work.run::<11>(),
-        _ => work.run::<MOST_COEFFICIENTS>(),
+        1 => work.run::<S, 1>(simd, 1),
+        2 => work.run::<S, 2>(simd, 2),
+        3 => work.run::<S, 3>(simd, 3),
+        4 => work.run::<S, 4>(simd, 4),
+        5 => work.run::<S, 5>(simd, 5),
+        6 => work.run::<S, 6>(simd, 6),
+        7 => work.run::<S, 7>(simd, 7),
+        8 => work.run::<S, 8>(simd, 8),
+        9 => work.run::<S, 9>(simd, 9),
+        10 => work.run::<S, 10>(simd, 10),
+        11 => work.run::<S, 11>(simd, 11),
+        _ => work.run::<S, MOST_COEFFICIENTS>(simd, MOST_COEFFICIENTS),
     }
 }
 
 /// The part of a column's u that lies over one span. Its evaluation is compiled for each kind of machine.
 pub struct SpanRun<'a> {
-    pub fit: &'a ColumnPolynomial,
+    /// s at the beginning \[mm\], and u_0 \[mm²\].
+    pub begin: [f64; 2],
+    /// Coefficients of q.
+    pub c: &'a [f64],
     pub u: &'a [f64],
     /// s \[mm\], overwritten.
     pub out: &'a mut [f64],
@@ -74,73 +85,53 @@ impl pulp::WithSimd for SpanRun<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { fit, u, out } = self;
-        per_degree(fit.n, OneRun { simd, begin: [fit.base, fit.u0], c: &fit.c, u, out });
+        per_degree(simd, self.c.len(), self);
     }
 }
 
-/// The evaluation of one polynomial over a run of values.
-pub struct OneRun<'a, S> {
-    pub simd: S,
-    /// s at the beginning \[mm\], and u_0 \[mm²\].
-    pub begin: [f64; 2],
-    /// Coefficients: at least as many as the compiled work uses.
-    pub c: &'a [f64],
-    pub u: &'a [f64],
-    pub out: &'a mut [f64],
-}
-
-impl<S: pulp::Simd> PerDegree for OneRun<'_, S> {
+impl PerDegree for SpanRun<'_> {
     #[inline(always)]
-    fn run<const N: usize>(self) {
-        let mut c = [0.0; N];
-        c.copy_from_slice(&self.c[..N]);
-        horner::<S, N, false, false>(self.simd, self.begin, &c, self.u, self.out);
+    fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
+        horner::<S, N, false>(simd, (self.begin, &self.c[..n]), self.u, self.out, false);
     }
 }
 
-/// Computes base + (u − u_0) Σ c_k (u − u_0)^k over a run of u by Horner's rule. If `FIRST`, u_0 is zero.
+/// Computes base + (u − u_0) Σ c_k (u − u_0)^k over a run of u by Horner's rule, with at most N coefficients. If `FIRST`, u_0 is
+/// zero.
 ///
-/// Multiply-adds are fused on every machine (by software if need be), so that all machines give the same bits. If `PAST`,
+/// Multiply-adds are fused on every machine (by software if need be), so that all machines give the same bits. If `past`,
 /// long runs are stored past the caches.
 #[inline(always)]
-pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool>(
+pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
-    [base, u0]: [f64; 2],
-    c: &[f64; N],
+    (begin, c): ([f64; 2], &[f64]),
     u: &[f64],
     out: &mut [f64],
+    past: bool,
 ) {
+    let polynomial = Splat::<S, N, FIRST>::new(simd, begin, c);
     let Some(last) = u.len().checked_sub(S::F64_LANES) else {
-        return singly([base, u0], c, u, out);
+        return polynomial.few(u, out);
     };
-    let (begin, splat) = splats(simd, [base, u0], c);
     // Stores of long runs begin at cache lines, because a store across two lines takes twice as long. The vectors that fill
     // the two ends may overlap the others.
-    let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(PAST)]);
+    let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(past)]);
     let begin_lines = if long { lead(out) } else { 0 };
-    if PAST && long {
+    if past && long {
         // Lines that partly belong to a neighbouring column are stored through the caches; all others past them. No line is
         // stored in both ways.
         let end_lines = end - (end - begin_lines) % LINE;
         for part in [0..begin_lines, end_lines..end] {
-            singly([base, u0], c, &u[part.clone()], &mut out[part]);
+            polynomial.few(&u[part.clone()], &mut out[part]);
         }
         let u = S::as_simd_f64s(&u[begin_lines..end_lines]).0;
         let out = S::as_mut_simd_f64s(&mut out[begin_lines..end_lines]).0;
-        return stream::write(out, u.iter().map(|&u| value::<S, N, FIRST>(simd, begin, &splat, u)));
+        return stream::write(out, u.iter().map(|&u| polynomial.value(u)));
     }
     let first = begin_lines.next_multiple_of(S::F64_LANES);
     let rest = if (end - begin_lines).is_multiple_of(S::F64_LANES) { end } else { last };
-    for part in [0..first, rest..end] {
-        let (u, out) = (S::as_simd_f64s(&u[part.clone()]).0, S::as_mut_simd_f64s(&mut out[part]).0);
-        for (s, &u) in out.iter_mut().zip(u) {
-            *s = value::<S, N, FIRST>(simd, begin, &splat, u);
-        }
-    }
-    let (u, out) = (S::as_simd_f64s(&u[begin_lines..]).0, S::as_mut_simd_f64s(&mut out[begin_lines..]).0);
-    for (s, &u) in out.iter_mut().zip(u) {
-        *s = value::<S, N, FIRST>(simd, begin, &splat, u);
+    for part in [0..first, rest..end, begin_lines..end] {
+        polynomial.vectors(&u[part.clone()], &mut out[part]);
     }
 }
 
@@ -149,57 +140,66 @@ pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool, const PAST: bool
 #[inline(always)]
 pub fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
-    begin: [f64; 2],
-    c: &[f64; N],
+    (begin, c): ([f64; 2], &[f64]),
     u: &[f64],
     out: &mut [f64],
 ) {
-    let (begin, splat) = splats(simd, begin, c);
-    let (u, out) = (S::as_simd_f64s(u).0, S::as_mut_simd_f64s(out).0);
-    let before = out.first().copied();
-    for (s, &u) in out.iter_mut().zip(u) {
-        *s = value::<S, N, FIRST>(simd, begin, &splat, u);
-    }
-    if !FIRST && let (Some(before), Some(s), Some(&u)) = (before, out.first_mut(), u.first()) {
-        *s = simd.select_f64s(simd.greater_than_f64s(u, begin[1]), *s, before);
+    let polynomial = Splat::<S, N, FIRST>::new(simd, begin, c);
+    let before = S::as_simd_f64s(out).0.first().copied();
+    polynomial.vectors(u, out);
+    if !FIRST
+        && let (Some(before), Some(s), Some(&u)) =
+            (before, S::as_mut_simd_f64s(out).0.first_mut(), S::as_simd_f64s(u).0.first())
+    {
+        *s = simd.select_f64s(simd.greater_than_f64s(u, polynomial.u0), *s, before);
     }
 }
 
-/// Makes vectors of base, of u_0 and of the coefficients. This is a loop, because the compiler may not inline closures.
-#[inline(always)]
-fn splats<S: pulp::Simd, const N: usize>(
+/// A polynomial of one column with each number in all lanes of a vector. Loops and functions, because the compiler may not inline
+/// closures.
+struct Splat<S: pulp::Simd, const N: usize, const FIRST: bool> {
     simd: S,
-    [base, u0]: [f64; 2],
-    c: &[f64; N],
-) -> ([S::f64s; 2], [S::f64s; N]) {
-    let mut splat = [simd.splat_f64s(0.0); N];
-    for (splat, c) in splat.iter_mut().zip(c) {
-        *splat = simd.splat_f64s(*c);
-    }
-    ([simd.splat_f64s(base), simd.splat_f64s(u0)], splat)
+    base: S::f64s,
+    u0: S::f64s,
+    c: [S::f64s; N],
+    n: usize,
 }
 
-/// Computes Horner's rule value by value.
-#[inline(always)]
-fn singly<const N: usize>([base, u0]: [f64; 2], c: &[f64; N], u: &[f64], out: &mut [f64]) {
-    for (s, u) in out.iter_mut().zip(u) {
-        let v = u - u0;
-        *s = c.iter().rev().fold(0.0, |q: f64, c| q.mul_add(v, *c)).mul_add(v, base);
+impl<S: pulp::Simd, const N: usize, const FIRST: bool> Splat<S, N, FIRST> {
+    #[inline(always)]
+    fn new(simd: S, [base, u0]: [f64; 2], c: &[f64]) -> Self {
+        let mut splat = [simd.splat_f64s(0.0); N];
+        for (splat, c) in splat.iter_mut().zip(c) {
+            *splat = simd.splat_f64s(*c);
+        }
+        Self { simd, base: simd.splat_f64s(base), u0: simd.splat_f64s(u0), c: splat, n: c.len() }
     }
-}
 
-/// Computes one vector of values. This is a function, because the compiler may not inline closures.
-#[inline(always)]
-fn value<S: pulp::Simd, const N: usize, const FIRST: bool>(
-    simd: S,
-    [base, u0]: [S::f64s; 2],
-    c: &[S::f64s; N],
-    u: S::f64s,
-) -> S::f64s {
-    let v = if FIRST { u } else { simd.sub_f64s(u, u0) };
-    let mut q = c[N - 1];
-    for &c in c[..N - 1].iter().rev() {
-        q = simd.mul_add_f64s(q, v, c);
+    /// Computes as many values as there are whole vectors.
+    #[inline(always)]
+    fn vectors(&self, u: &[f64], out: &mut [f64]) {
+        for (s, &u) in S::as_mut_simd_f64s(out).0.iter_mut().zip(S::as_simd_f64s(u).0) {
+            *s = self.value(u);
+        }
     }
-    simd.mul_add_f64s(q, v, base)
+
+    /// Computes at most as many values as a cache line holds, which is no less than a vector.
+    #[inline(always)]
+    fn few(&self, u: &[f64], out: &mut [f64]) {
+        let [mut line, mut s] = [[0.0; LINE]; 2];
+        line[..u.len()].copy_from_slice(u);
+        self.vectors(&line, &mut s);
+        out.copy_from_slice(&s[..u.len()]);
+    }
+
+    /// Computes one vector of values.
+    #[inline(always)]
+    fn value(&self, u: S::f64s) -> S::f64s {
+        let v = if FIRST { u } else { self.simd.sub_f64s(u, self.u0) };
+        let mut q = self.c[self.n - 1];
+        for &c in self.c[..self.n - 1].iter().rev() {
+            q = self.simd.mul_add_f64s(q, v, c);
+        }
+        self.simd.mul_add_f64s(q, v, self.base)
+    }
 }

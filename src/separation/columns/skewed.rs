@@ -5,7 +5,7 @@
 //! halved. The absolute error of the interpolant is a share of the interval's largest s. Intervals in which s is much
 //! smaller somewhere, near C, are therefore divided or computed point by point.
 
-use super::horner::{MOST_COEFFICIENTS, OneRun, per_degree};
+use super::horner::{MOST_COEFFICIENTS, SpanRun};
 use crate::numerics::chebyshev::{self, PROOF};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
@@ -178,7 +178,7 @@ pub fn interpolate<S: pulp::Simd>(
     if c.len() > MOST_COEFFICIENTS || !c.iter().all(|c| c.is_finite()) {
         return None;
     }
-    per_degree(c.len(), OneRun { simd, begin: [powers[0], centre], c, u: eta, out });
+    simd.vectorize(SpanRun { begin: [powers[0], centre], c, u: eta, out });
     Some(dropped)
 }
 

@@ -72,49 +72,58 @@ impl ColumnPolynomials {
         lanes(|k| q[k].mul_add(v[k], self.base[k]))
     }
 
-    /// Returns s and u_0 at the beginning of the k-th column's span, and its N coefficients.
+    /// Returns s and u_0 at the beginning of the k-th column's span, and its n coefficients, at most N.
     #[inline(always)]
-    fn column<const N: usize>(&self, k: usize) -> ([f64; 2], [f64; N]) {
+    fn column<const N: usize>(&self, k: usize, n: usize) -> ([f64; 2], [f64; N]) {
         let mut c = [0.0; N];
-        for (c, row) in c.iter_mut().zip(&self.c) {
+        for (c, row) in c.iter_mut().zip(&self.c[..n]) {
             *c = row[k];
         }
         ([self.base[k], self.u0[k]], c)
     }
 }
 
-/// Neighbouring columns of one strip that are to be evaluated. The work is compiled for each kind of machine. If `PAST`,
-/// values are stored past the caches.
+/// How columns are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Writing {
+    /// One half of each column, in whole vectors, and the other one as its mirror image.
+    Outwards,
+    /// From the first value to the last one.
+    Whole,
+    /// From the first value to the last one, past the caches where runs are long.
+    PastCaches,
+}
+
+/// Neighbouring columns of one strip that are to be evaluated. The work is compiled for each kind of machine.
 ///
 /// This is a struct and not a closure: the compiler may not inline a closure, which would then lack the machine's widest
 /// vectors.
-pub struct StripColumns<'a, const PAST: bool> {
+pub struct StripColumns<'a> {
     pub relief: &'a Relief<'a>,
     pub strip: &'a Strip,
     /// ξ of the columns \[mm\], at most [`MANY`].
     pub xi: &'a [f64],
     pub axis: &'a EtaAxis,
-    /// Whether one half of each column is the mirror image of the other, and columns consist of whole vectors.
-    pub mirrored: bool,
+    pub writing: Writing,
     /// Memory for the polynomials of every span, overwritten.
     pub scratch: &'a mut Vec<ColumnPolynomials>,
     /// s \[mm\], column by column, overwritten.
     pub out: &'a mut [f64],
 }
 
-impl<const PAST: bool> pulp::WithSimd for StripColumns<'_, PAST> {
+impl pulp::WithSimd for StripColumns<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { relief, strip, xi, axis, mirrored, scratch: polynomials, out } = self;
+        let Self { relief, strip, xi, axis, writing, scratch: polynomials, out } = self;
         polynomials.resize(strip.spans, ColumnPolynomials::ZERO);
         strip.polynomials(relief, xi, axis.reach * axis.reach, polynomials);
         let n = strip.coefficients;
         if strip.spans == 1 {
-            per_degree(n, Evaluation::<S, true, PAST> { simd, polynomials, axis, mirrored, out });
+            simd.vectorize(Evaluation::<true> { polynomials, n, axis, writing, out });
         } else {
-            per_degree(n, Evaluation::<S, false, PAST> { simd, polynomials, axis, mirrored, out });
+            simd.vectorize(Evaluation::<false> { polynomials, n, axis, writing, out });
         }
     }
 }
@@ -169,42 +178,52 @@ impl Strip {
     }
 }
 
-/// Neighbouring columns that are to be evaluated from their polynomials over every span. If `SINGLE`, there is one span.
-pub struct Evaluation<'a, S, const SINGLE: bool, const PAST: bool> {
-    pub simd: S,
+/// Neighbouring columns that are to be evaluated from their polynomials over every span. If `SINGLE`, there is one span. The
+/// work is compiled for each kind of machine.
+pub struct Evaluation<'a, const SINGLE: bool> {
     /// Polynomials of every span, in order of u.
     pub polynomials: &'a [ColumnPolynomials],
+    /// Number of their coefficients.
+    pub n: usize,
     pub axis: &'a EtaAxis,
-    /// Whether one half of each column is the mirror image of the other, and columns consist of whole vectors.
-    pub mirrored: bool,
+    pub writing: Writing,
     /// s \[mm\], column by column, overwritten.
     pub out: &'a mut [f64],
 }
 
-impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> PerDegree for Evaluation<'_, S, SINGLE, PAST> {
+impl<const SINGLE: bool> pulp::WithSimd for Evaluation<'_, SINGLE> {
+    type Output = ();
+
     #[inline(always)]
-    fn run<const N: usize>(self) {
-        if self.mirrored {
-            self.outwards::<N>();
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        per_degree(simd, self.n, self);
+    }
+}
+
+impl<const SINGLE: bool> PerDegree for Evaluation<'_, SINGLE> {
+    #[inline(always)]
+    fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
+        if self.writing == Writing::Outwards {
+            self.outwards::<S, N>(simd, n);
         } else {
-            self.whole::<N>();
+            self.whole::<S, N>(simd, n);
         }
     }
 }
 
-impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SINGLE, PAST> {
+impl<const SINGLE: bool> Evaluation<'_, SINGLE> {
     /// Writes columns in whole vectors, from the vector that holds the first η ≥ 0 outwards, and then their mirror images.
     #[inline(always)]
-    fn outwards<const N: usize>(self) {
-        let Self { simd, polynomials: spans, axis, out, .. } = self;
+    fn outwards<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
+        let Self { polynomials: spans, axis, out, .. } = self;
         let (count, lanes) = (axis.eta.len(), S::F64_LANES);
         let half = axis.first_positive - axis.first_positive % lanes;
         // The first vector of each span: it holds the span's beginning, and also the end of the previous span.
         let mut begins = [half; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
-                let (begin, c) = spans[0].column(k);
-                whole_vectors::<S, N, true>(simd, begin, &c, &axis.u[half..], &mut out[half..]);
+                let (begin, c) = spans[0].column::<N>(k, n);
+                whole_vectors::<S, N, true>(simd, (begin, &c[..n]), &axis.u[half..], &mut out[half..]);
             } else {
                 for (index, span) in spans.iter().enumerate().skip(1) {
                     // The vector is mostly that of the previous column. A loop with an end that processors cannot predict
@@ -222,11 +241,11 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 for (index, span) in spans.iter().enumerate() {
                     let end = if index + 1 < spans.len() { begins[index + 1] + lanes } else { count };
                     let (u, out) = (&axis.u[begins[index]..end], &mut out[begins[index]..end]);
-                    let (begin, c) = span.column(k);
+                    let (begin, c) = span.column::<N>(k, n);
                     if index == 0 {
-                        whole_vectors::<S, N, true>(simd, begin, &c, u, out);
+                        whole_vectors::<S, N, true>(simd, (begin, &c[..n]), u, out);
                     } else {
-                        whole_vectors::<S, N, false>(simd, begin, &c, u, out);
+                        whole_vectors::<S, N, false>(simd, (begin, &c[..n]), u, out);
                     }
                 }
             }
@@ -236,14 +255,15 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
 
     /// Writes columns from the first η to the last one, so that memory is written in order.
     #[inline(always)]
-    fn whole<const N: usize>(self) {
-        let Self { simd, polynomials: spans, axis, out, .. } = self;
+    fn whole<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
+        let past = self.writing == Writing::PastCaches;
+        let Self { polynomials: spans, axis, out, .. } = self;
         let count = axis.eta.len();
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
-                let (begin, c) = spans[0].column(k);
-                horner::<S, N, true, PAST>(simd, begin, &c, &axis.u, out);
+                let (begin, c) = spans[0].column::<N>(k, n);
+                horner::<S, N, true>(simd, (begin, &c[..n]), &axis.u, out, past);
                 continue;
             }
             for (index, span) in spans.iter().enumerate().skip(1).rev() {
@@ -263,8 +283,8 @@ impl<S: pulp::Simd, const SINGLE: bool, const PAST: bool> Evaluation<'_, S, SING
                 // Only whole vectors are written. The next span overwrites the values beyond the end of this one.
                 let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
                 let run = begin..if whole <= count { whole } else { end };
-                let (beginning, c) = spans[index].column(k);
-                horner::<S, N, false, PAST>(simd, beginning, &c, &axis.u[run.clone()], &mut out[run]);
+                let (beginning, c) = spans[index].column::<N>(k, n);
+                horner::<S, N, false>(simd, (beginning, &c[..n]), &axis.u[run.clone()], &mut out[run], past);
                 begin = end;
             }
         }

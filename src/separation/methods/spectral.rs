@@ -5,10 +5,9 @@ use crate::numerics::interval::Interval;
 use crate::numerics::lanes::MANY;
 use crate::separation::axis::{EtaAxis, mirror};
 use crate::separation::columns::fit::Fitter;
-use crate::separation::columns::horner::{SpanRun, per_degree};
 use crate::separation::columns::neighbours::MOST_SPANS;
 use crate::separation::columns::skewed;
-use crate::separation::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
+use crate::separation::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns, Writing};
 use crate::separation::kernel::Kernel;
 use crate::separation::span::Span;
 use crate::separation::values::{LINE, Residence, lead};
@@ -106,14 +105,14 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { spectral, xi, out } = self;
-        let (axis, length, mirrored) = (spectral.axis, spectral.axis.eta.len(), spectral.mirrored(out));
+        let (axis, length, writing) = (spectral.axis, spectral.axis.eta.len(), spectral.writing(out));
         let Spectral { fitter, polynomials, truncation, .. } = &mut *spectral;
         let mut taken = [false; MANY];
         if let Some((fitted, n, error)) = fitter.columns(axis.reach * axis.reach, xi) {
             (taken, *truncation) = (fitted, truncation.max(error));
             polynomials.resize(1, ColumnPolynomials::ZERO);
             polynomials[0].set(&fitter.rows, &fitter.neighbours.spans[0].base);
-            per_degree(n, Evaluation::<S, true, false> { simd, polynomials, axis, mirrored, out });
+            simd.vectorize(Evaluation::<true> { polynomials, n, axis, writing, out });
         }
         for ((&xi, out), taken) in xi.iter().zip(out.chunks_exact_mut(length)).zip(taken) {
             if !taken {
@@ -124,27 +123,25 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
 }
 
 impl Spectral<'_> {
-    /// Returns whether only one half of these columns is to be evaluated and then mirrored. This needs columns of whole
-    /// cache lines, because stores across two lines take longer than the mirroring saves. It also needs an array inside the
-    /// second cache: beyond it, storing backwards takes longer.
-    fn mirrored(&self, columns: &[f64]) -> bool {
+    /// Returns how these columns are written. To mirror needs columns of whole cache lines, because stores across two lines take
+    /// longer than the mirroring saves. It also needs an array inside the second cache: beyond it, storing backwards takes longer.
+    fn writing(&self, columns: &[f64]) -> Writing {
         let lines = self.axis.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
-        self.axis.symmetric && lines && self.residence == Residence::SecondCache
+        match self.residence {
+            Residence::SecondCache if self.axis.symmetric && lines => Writing::Outwards,
+            Residence::Memory => Writing::PastCaches,
+            _ => Writing::Whole,
+        }
     }
 
     /// Writes at most [`MANY`] neighbouring columns, all of one strip or all of none.
     fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
-        let (arch, axis, mirrored) = (self.fitter.arch, self.axis, self.mirrored(out));
+        let (arch, axis, writing) = (self.fitter.arch, self.axis, self.writing(out));
         let (relief, scratch) = (&self.fitter.relief, &mut self.polynomials);
         match strip {
-            Some(strip) if self.residence == Residence::Memory => {
-                arch.dispatch(StripColumns::<true> { relief, strip, xi, axis, mirrored, scratch, out });
-            }
-            Some(strip) => {
-                arch.dispatch(StripColumns::<false> { relief, strip, xi, axis, mirrored, scratch, out });
-            }
+            Some(strip) => arch.dispatch(StripColumns { relief, strip, xi, axis, writing, scratch, out }),
             None if xi.len() > 1 && !relief.is_skewed() => {
-                arch.dispatch(EachColumn { spectral: self, xi, out });
+                arch.dispatch(EachColumn { spectral: self, xi, out })
             }
             None => {
                 for (&xi, out) in xi.iter().zip(out.chunks_exact_mut(axis.eta.len())) {
@@ -173,7 +170,7 @@ impl Spectral<'_> {
             for range in self.axis.ranges(u) {
                 let (u, out) = (&self.axis.u[range.clone()], &mut out[range]);
                 match &fit {
-                    Some(fit) => self.fitter.arch.dispatch(SpanRun { fit, u, out }),
+                    Some(fit) => self.fitter.arch.dispatch(fit.over(u, out)),
                     None => self.fitter.relief.over_span(xi, span, u, out),
                 }
             }
