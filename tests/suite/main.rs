@@ -33,6 +33,7 @@ mod invariances;
 mod layers;
 mod loads;
 mod measure;
+mod measured_files;
 mod measured_scene;
 mod mesh;
 mod motion;

@@ -51,12 +51,12 @@ impl Oracle {
             return f64::INFINITY;
         }
         let root = ((length - c) * (length + c)).max(0.0).sqrt();
-        let both = [1.0, -1.0].map(|sign| {
+        let on_side = |sign: f64| {
             let s = (a * c + sign * b * root) / (length * length);
             let k = (b * c - sign * a * root) / (length * length);
             height(s, k)
-        });
-        both[0].min(both[1]) - rail
+        };
+        on_side(1.0).min(on_side(-1.0)) - rail
     }
 
     /// Returns the wheel's height over an abscissa between two samples without yaw, where its profile is a
@@ -114,7 +114,9 @@ impl Oracle {
         // the roll.
         let [offset, yaw, roll] = self.pose;
         let rise = 0.5 / ((self.radius + 40.0) * yaw.sin().powi(2));
-        let mut coarse_so_far = f64::INFINITY;
+        // The ring beside X is among the lowest, so that most others need no closed form.
+        let beside = self.samples[from..to].partition_point(|[x, _]| *x < at - offset) + from;
+        let mut coarse_so_far = self.gap(self.samples[beside], at, rail);
         let quick = |sample: &[f64; 2]| {
             let [x, z] = *sample;
             let u = ((x * yaw.cos() - (at - offset)).abs() - 60.0 * roll.abs()).max(0.0);

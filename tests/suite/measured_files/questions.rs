@@ -116,7 +116,7 @@ fn an_overhang_at_an_end_is_named_as_the_file_has_it_whatever_the_axes() {
 fn the_real_file_with_an_added_point_says_which_one_it_is() -> Result<()> {
     let Some(contact) = std::env::var_os("WHEELRAIL_CONTACT") else { return Ok(()) };
     let path = std::path::Path::new(&contact).join("testbank/profiles/avg_low2.ban");
-    let bytes = crate::files::read_bytes(&path, LARGEST_FILE)?;
+    let bytes = wheelrail::files::read_bytes(&path, wheelrail::measured::LARGEST_FILE)?;
     for mirror in [false, true] {
         let options = Options { mirror: Some(mirror), repair: vec![Repair::Sort], ..Options::default() };
         let error =
