@@ -130,9 +130,10 @@ pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool>(
     }
     let first = begin_lines.next_multiple_of(S::F64_LANES);
     let rest = if (end - begin_lines).is_multiple_of(S::F64_LANES) { end } else { last };
-    for part in [0..first, rest..end, begin_lines..end] {
+    for part in [0..first, rest..end] {
         polynomial.vectors(&u[part.clone()], &mut out[part]);
     }
+    polynomial.vectors(&u[begin_lines..], &mut out[begin_lines..]);
 }
 
 /// Computes Horner's rule over whole vectors. Values up to u_0 in the first vector stay unchanged, unless `FIRST` (u_0 is

@@ -72,11 +72,12 @@ impl ColumnPolynomials {
         lanes(|k| q[k].mul_add(v[k], self.base[k]))
     }
 
-    /// Returns s and u_0 at the beginning of the k-th column's span, and its n coefficients, at most N.
+    /// Returns s and u_0 at the beginning of the k-th column's span, and N coefficients; those beyond the polynomial's own are of no
+    /// use.
     #[inline(always)]
-    fn column<const N: usize>(&self, k: usize, n: usize) -> ([f64; 2], [f64; N]) {
+    fn column<const N: usize>(&self, k: usize) -> ([f64; 2], [f64; N]) {
         let mut c = [0.0; N];
-        for (c, row) in c.iter_mut().zip(&self.c[..n]) {
+        for (c, row) in c.iter_mut().zip(&self.c) {
             *c = row[k];
         }
         ([self.base[k], self.u0[k]], c)
@@ -218,30 +219,31 @@ impl<const SINGLE: bool> Evaluation<'_, SINGLE> {
         let Self { polynomials: spans, axis, out, .. } = self;
         let (count, lanes) = (axis.eta.len(), S::F64_LANES);
         let half = axis.first_positive - axis.first_positive % lanes;
+        let (all, outer) = (&axis.u[..], &axis.u[half..]);
         // The first vector of each span: it holds the span's beginning, and also the end of the previous span.
         let mut begins = [half; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
-                let (begin, c) = spans[0].column::<N>(k, n);
-                whole_vectors::<S, N, true>(simd, (begin, &c[..n]), &axis.u[half..], &mut out[half..]);
+                let (begin, c) = spans[0].column::<N>(k);
+                whole_vectors::<S, N, true>(simd, (begin, &c[..n]), outer, &mut out[half..]);
             } else {
                 for (index, span) in spans.iter().enumerate().skip(1) {
                     // The vector is mostly that of the previous column. A loop with an end that processors cannot predict
                     // takes longer.
                     let least = begins[index - 1];
                     let mut begin = begins[index].max(least);
-                    while begin > least && axis.u[begin] > span.u0[k] {
+                    while begin > least && all[begin] > span.u0[k] {
                         begin -= lanes;
                     }
-                    while begin + lanes < count && axis.u[begin + lanes] <= span.u0[k] {
+                    while begin + lanes < count && all[begin + lanes] <= span.u0[k] {
                         begin += lanes;
                     }
                     begins[index] = begin;
                 }
                 for (index, span) in spans.iter().enumerate() {
                     let end = if index + 1 < spans.len() { begins[index + 1] + lanes } else { count };
-                    let (u, out) = (&axis.u[begins[index]..end], &mut out[begins[index]..end]);
-                    let (begin, c) = span.column::<N>(k, n);
+                    let (u, out) = (&all[begins[index]..end], &mut out[begins[index]..end]);
+                    let (begin, c) = span.column::<N>(k);
                     if index == 0 {
                         whole_vectors::<S, N, true>(simd, (begin, &c[..n]), u, out);
                     } else {
@@ -258,12 +260,12 @@ impl<const SINGLE: bool> Evaluation<'_, SINGLE> {
     fn whole<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
         let past = self.writing == Writing::PastCaches;
         let Self { polynomials: spans, axis, out, .. } = self;
-        let count = axis.eta.len();
+        let (count, all) = (axis.eta.len(), &axis.u[..]);
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
-                let (begin, c) = spans[0].column::<N>(k, n);
-                horner::<S, N, true>(simd, (begin, &c[..n]), &axis.u, out, past);
+                let (begin, c) = spans[0].column::<N>(k);
+                horner::<S, N, true>(simd, (begin, &c[..n]), all, out, past);
                 continue;
             }
             for (index, span) in spans.iter().enumerate().skip(1).rev() {
@@ -283,8 +285,8 @@ impl<const SINGLE: bool> Evaluation<'_, SINGLE> {
                 // Only whole vectors are written. The next span overwrites the values beyond the end of this one.
                 let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
                 let run = begin..if whole <= count { whole } else { end };
-                let (beginning, c) = spans[index].column::<N>(k, n);
-                horner::<S, N, false>(simd, (beginning, &c[..n]), &axis.u[run.clone()], &mut out[run], past);
+                let (beginning, c) = spans[index].column::<N>(k);
+                horner::<S, N, false>(simd, (beginning, &c[..n]), &all[run.clone()], &mut out[run], past);
                 begin = end;
             }
         }
