@@ -1,20 +1,21 @@
-//! Tests the ways between bytes, points and their defects.
+//! Tests what lies between the bytes of a file and its profile: readers, repairs, and what a file says of itself. Whole files are
+//! tested in tests/suite.
 
 use super::*;
 use crate::profile::standards;
 
 mod mutations;
 
-const FILES: [(&str, &[u8]); 9] = [
-    ("new-style.ban", include_bytes!("../../tests/profiles/new-style.ban")),
-    ("old-style.whl", include_bytes!("../../tests/profiles/old-style.whl")),
-    ("sections.mpt", include_bytes!("../../tests/profiles/sections.mpt")),
-    ("design.ban", include_bytes!("../../tests/profiles/design.ban")),
-    ("wheel.prw", include_bytes!("../../tests/profiles/wheel.prw")),
-    ("wheel.wheel", include_bytes!("../../tests/profiles/wheel.wheel")),
-    ("rail.csv", include_bytes!("../../tests/profiles/rail.csv")),
-    ("rail.txt", include_bytes!("../../tests/profiles/rail.txt")),
-    ("rail.prr", include_bytes!("../../tests/profiles/rail.prr")),
+const FILES: [(&str, &[u8], Side); 9] = [
+    ("new-style.ban", include_bytes!("../../tests/profiles/new-style.ban"), Side::Rail),
+    ("old-style.whl", include_bytes!("../../tests/profiles/old-style.whl"), Side::Wheel),
+    ("sections.mpt", include_bytes!("../../tests/profiles/sections.mpt"), Side::Rail),
+    ("design.ban", include_bytes!("../../tests/profiles/design.ban"), Side::Rail),
+    ("wheel.prw", include_bytes!("../../tests/profiles/wheel.prw"), Side::Wheel),
+    ("wheel.wheel", include_bytes!("../../tests/profiles/wheel.wheel"), Side::Wheel),
+    ("rail.csv", include_bytes!("../../tests/profiles/rail.csv"), Side::Rail),
+    ("rail.txt", include_bytes!("../../tests/profiles/rail.txt"), Side::Rail),
+    ("rail.prr", include_bytes!("../../tests/profiles/rail.prr"), Side::Rail),
 ];
 
 #[test]
@@ -129,5 +130,20 @@ fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
             assert_eq!(back, points, "{format:?}");
         }
     }
+    Ok(())
+}
+
+#[test]
+fn files_name_their_body() -> Result<()> {
+    for (name, bytes, side) in FILES {
+        let free = ["sections.mpt", "rail.csv", "rail.txt"].contains(&name);
+        let expected = (!free).then_some(side);
+        assert_eq!(body(&name.to_uppercase(), bytes, &Options::default())?, expected, "{name}");
+    }
+    let header = Options { format: Some(Format::Simpack), ..Options::default() };
+    assert_eq!(
+        body("wheel.txt", include_bytes!("../../tests/profiles/wheel.prw"), &header)?,
+        Some(Side::Wheel)
+    );
     Ok(())
 }

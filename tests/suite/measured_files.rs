@@ -1,38 +1,28 @@
 //! Tests the whole way from bytes to a profile, on the samples in tests/profiles.
 
 use wheelrail::measured::{
-    Check, Column, CurveKind, Format, Measured, Options, Repair, SectionOfList, SliceList, Unit, body,
-    profile, section, write,
+    Check, CurveKind, Format, Measured, Options, Repair, SectionOfList, SliceList, Unit, body, profile,
+    section, write,
 };
 use wheelrail::profile::Section;
 use wheelrail::{Error, Profile, Result, Side, standards};
 use wheelrail_report::random::Random;
 
 mod curves;
-mod mutations;
 mod questions;
 mod slices;
 
-const FILES: [(&str, &[u8], Side); 9] = [
-    ("new-style.ban", include_bytes!("../profiles/new-style.ban"), Side::Rail),
-    ("old-style.whl", include_bytes!("../profiles/old-style.whl"), Side::Wheel),
-    ("sections.mpt", include_bytes!("../profiles/sections.mpt"), Side::Rail),
-    ("design.ban", include_bytes!("../profiles/design.ban"), Side::Rail),
-    ("wheel.prw", include_bytes!("../profiles/wheel.prw"), Side::Wheel),
-    ("wheel.wheel", include_bytes!("../profiles/wheel.wheel"), Side::Wheel),
-    ("rail.csv", include_bytes!("../profiles/rail.csv"), Side::Rail),
-    ("rail.txt", include_bytes!("../profiles/rail.txt"), Side::Rail),
-    ("rail.prr", include_bytes!("../profiles/rail.prr"), Side::Rail),
-];
-
-fn bytes(name: &str) -> (&'static [u8], Side) {
-    FILES.iter().find(|file| file.0 == name).map_or((&[], Side::Rail), |file| (file.1, file.2))
+/// Returns the bytes of a sample in tests/profiles.
+fn bytes(name: &str) -> Vec<u8> {
+    std::fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/profiles").join(name))
+        .expect(name)
 }
 
+/// Makes the profile of a sample: of a rail where the file names no body.
 fn measured(name: &str, options: &str) -> Result<Measured> {
-    let (bytes, side) = bytes(name);
-    let options = toml::from_str(options).map_err(|e| Error::new("options", e.to_string(), "", ""))?;
-    profile(name, bytes, side, &options)
+    let (bytes, options) = (bytes(name), toml::from_str(options).expect(options));
+    let side = body(name, &bytes, &options)?.unwrap_or(Side::Rail);
+    profile(name, &bytes, side, &options)
 }
 
 /// Returns the largest difference in height of two profiles over a range of x.
@@ -98,8 +88,8 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     assert!(measured("rail.prr", "").is_ok_and(|m| m.record.transform.steps.len() == 3));
     let one_sided = measured("rail.csv", "unit = 'm'\ncolumns = [2, 3]");
     assert!(one_sided.is_ok_and(|m| m.record.transform.scale == [-1e3, 1e3]));
-    let (wheel, _) = bytes("wheel.prw");
-    assert!(profile("wheel.prw", wheel, Side::Rail, &Options::default()).is_err());
+    let wheel = bytes("wheel.prw");
+    assert!(profile("wheel.prw", &wheel, Side::Rail, &Options::default()).is_err());
     for (name, options, part) in [
         ("rail.csv", "columns = [2, 3]", "\"m\" or"),
         ("rail.csv", "unit = 'm'", "columns"),
@@ -256,18 +246,6 @@ fn options_without_effect_are_named() {
         let error = measured(name, options).err();
         assert_eq!(error, None, "{name} {options}");
     }
-}
-
-#[test]
-fn files_name_their_body() -> Result<()> {
-    for (name, bytes, side) in FILES {
-        let free = ["sections.mpt", "rail.csv", "rail.txt"].contains(&name);
-        let expected = (!free).then_some(side);
-        assert_eq!(body(&name.to_uppercase(), bytes, &Options::default())?, expected, "{name}");
-    }
-    let header = Options { format: Some(Format::Simpack), ..Options::default() };
-    assert_eq!(body("wheel.txt", bytes("wheel.prw").0, &header)?, Some(Side::Wheel));
-    Ok(())
 }
 
 #[test]

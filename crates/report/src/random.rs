@@ -1,27 +1,5 @@
 //! Random numbers from a seed: the same in every run. Uniform ones are equal on every machine, normal ones but for rounding.
 
-/// What readers of profiles may stumble over, for [`Random::mutate`].
-pub const SNIPPETS: [&str; 18] = [
-    "\n",
-    "\n\n",
-    " ",
-    ",",
-    ";",
-    "=",
-    "\"",
-    "!",
-    "-",
-    "1e999",
-    "nan",
-    "\u{1a}",
-    "[Profile2Points]\n",
-    "XYPoints=1\n",
-    "MPD3=A 1 2 3 4 5\n",
-    "point.end\n",
-    "inversion = 1\n",
-    "ColumnDef=Y,X\n",
-];
-
 /// A stream of random numbers by SplitMix64; normal ones are made by Box–Muller.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
@@ -65,30 +43,5 @@ impl Random {
     pub fn normal(&mut self) -> f64 {
         let (radius, turn) = ((-2.0 * self.uniform().ln()).sqrt(), std::f64::consts::TAU * self.uniform());
         radius * turn.cos()
-    }
-
-    /// Changes bytes at one to four places, as transfers and editors do: bytes and bits change, pieces go, come twice or turn around,
-    /// and one of `snippets` comes in.
-    pub fn mutate(&mut self, bytes: &mut Vec<u8>, snippets: &[&str]) {
-        for _ in 0..=self.below(3) {
-            let at = self.below(bytes.len());
-            let end = (at + self.below(40)).min(bytes.len());
-            match self.below(7) {
-                0 if at < bytes.len() => bytes[at] = self.below(256) as u8,
-                1 if at < bytes.len() => bytes[at] ^= 1 << self.below(8),
-                2 => drop(bytes.drain(at..end)),
-                3 => {
-                    let copy = bytes[at..end].to_vec();
-                    let to = self.below(bytes.len());
-                    bytes.splice(to..to, copy);
-                }
-                4 => bytes.truncate(at.max(1)),
-                5 => bytes[at..end].reverse(),
-                _ => {
-                    let snippet = self.pick(snippets);
-                    bytes.splice(at..at, snippet.bytes());
-                }
-            }
-        }
     }
 }
