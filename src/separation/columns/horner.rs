@@ -47,7 +47,8 @@ pub trait PerDegree {
     fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize);
 }
 
-/// Calls `work` compiled for n coefficients; n is at most [`MOST_COEFFICIENTS`]. Without vectors, unrolled loops gain nothing.
+/// Calls `work` as it is compiled for n coefficients, from 1 to [`MOST_COEFFICIENTS`]. On machines without vectors one copy, with loops
+/// that are not unrolled, serves all n.
 #[inline(always)]
 pub fn per_degree<S: pulp::Simd>(simd: S, n: usize, work: impl PerDegree) {
     if S::F64_LANES == 1 {
@@ -156,8 +157,8 @@ pub fn whole_vectors<S: pulp::Simd, const N: usize, const FIRST: bool>(
     }
 }
 
-/// A polynomial of one column with each number in all lanes of a vector. Loops and functions, because the compiler may not inline
-/// closures.
+/// A polynomial of one column, ready for vectors: every lane of a vector holds the same number. It is filled by a loop, because the
+/// compiler may not inline closures.
 struct Splat<S: pulp::Simd, const N: usize, const FIRST: bool> {
     simd: S,
     base: S::f64s,
@@ -176,7 +177,7 @@ impl<S: pulp::Simd, const N: usize, const FIRST: bool> Splat<S, N, FIRST> {
         Self { simd, base: simd.splat_f64s(base), u0: simd.splat_f64s(u0), c: splat, n: c.len() }
     }
 
-    /// Computes as many values as there are whole vectors.
+    /// Computes s \[mm\] at u \[mm²\] in whole vectors; values beyond the last whole one stay unchanged.
     #[inline(always)]
     fn vectors(&self, u: &[f64], out: &mut [f64]) {
         for (s, &u) in S::as_mut_simd_f64s(out).0.iter_mut().zip(S::as_simd_f64s(u).0) {

@@ -72,8 +72,8 @@ impl ColumnPolynomials {
         lanes(|k| q[k].mul_add(v[k], self.base[k]))
     }
 
-    /// Returns s and u_0 at the beginning of the k-th column's span, and N coefficients; those beyond the polynomial's own are of no
-    /// use.
+    /// Returns s and u_0 at the beginning of the k-th column's span, and its first N coefficients. If it has fewer, the rest are left
+    /// over from other columns.
     #[inline(always)]
     fn column<const N: usize>(&self, k: usize) -> ([f64; 2], [f64; N]) {
         let mut c = [0.0; N];
