@@ -5,13 +5,13 @@ use crate::in_time::InTime;
 use rayon::prelude::*;
 use wheelrail::Interval;
 use wheelrail::case::contacts;
+use wheelrail::internal::Random;
 use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, standards};
 use wheelrail::scene;
 use wheelrail::separation::{Choice, Demand, EtaAxis, Method};
-use wheelrail_report::random::Random;
 
 /// Random pairs, as many as `WHEELRAIL_PATCHES` says instead; each seeded by its number.
 const PAIRS: u64 = 3000;
@@ -198,39 +198,33 @@ impl Filled {
         })
     }
 
-    /// Number of parts of the points inside, where neighbours are four, and where they are eight.
+    /// Number of parts of the points inside, where neighbours are four, and where they are eight: runs of points inside of neighbouring
+    /// columns are joined where they meet, of eight also where their ends are one point apart.
     fn parts(&self) -> [usize; 2] {
-        [4, 8].map(|neighbours| {
-            let (n, m) = (self.xi.len() as i64, self.eta.len() as i64);
-            let mut known = vec![false; self.depth.len()];
-            let mut count = 0;
-            let mut stack = Vec::new();
-            for start in 0..self.depth.len() {
-                if known[start] || self.depth[start] >= 0.0 {
-                    continue;
-                }
-                count += 1;
-                known[start] = true;
-                stack.push(start);
-                while let Some(k) = stack.pop() {
-                    let (i, j) = (k as i64 / m, k as i64 % m);
-                    for (di, dj) in [(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)]
-                        .into_iter()
-                        .take(neighbours)
-                    {
-                        let (p, q) = (i + di, j + dj);
-                        if p < 0 || q < 0 || p >= n || q >= m {
-                            continue;
-                        }
-                        let l = (p * m + q) as usize;
-                        if !known[l] && self.depth[l] < 0.0 {
-                            known[l] = true;
-                            stack.push(l);
-                        }
+        let columns: Vec<Vec<[usize; 2]>> = self.depth.chunks(self.eta.len()).map(runs_inside).collect();
+        [0, 1].map(|corner| {
+            let mut parts = 0;
+            // The run with which a run was joined; its own number if with none.
+            let mut joined: Vec<usize> = Vec::new();
+            let mut before = 0;
+            for (i, runs) in columns.iter().enumerate() {
+                let begin = joined.len();
+                joined.extend(begin..begin + runs.len());
+                parts += runs.len();
+                let mut k = 0;
+                for (number, &[low, high]) in runs.iter().enumerate().filter(|_| i > 0) {
+                    let last = &columns[i - 1];
+                    k += last[k..].iter().take_while(|run| run[1] + corner < low).count();
+                    for other in (k..last.len()).take_while(|&other| last[other][0] <= high + corner) {
+                        let [a, b] =
+                            [before + other, begin + number].map(|run| first_joined(&mut joined, run));
+                        parts -= usize::from(a != b);
+                        joined[b] = a;
                     }
                 }
+                before = begin;
             }
-            count
+            parts
         })
     }
 
@@ -240,6 +234,25 @@ impl Filled {
         let ends = |i: usize| self.at(i, 0) < 0.0 || self.at(i, m - 1) < 0.0;
         (0..n).any(ends) || (0..m).any(|j| self.at(0, j) < 0.0 || self.at(n - 1, j) < 0.0)
     }
+}
+
+/// The first and last point of every run of points inside of a column.
+fn runs_inside(column: &[f64]) -> Vec<[usize; 2]> {
+    let mut end = 0;
+    let alike = column.chunk_by(|a, b| (*a < 0.0) == (*b < 0.0)).map(|run| {
+        end += run.len();
+        (run[0] < 0.0, [end - run.len(), end - 1])
+    });
+    alike.filter(|(inside, _)| *inside).map(|(_, run)| run).collect()
+}
+
+/// The run for which all that were joined with a run stand.
+fn first_joined(joined: &mut [usize], mut run: usize) -> usize {
+    while joined[run] != run {
+        joined[run] = joined[joined[run]];
+        run = joined[run];
+    }
+    run
 }
 
 /// Every point of the grid, judged by the patch's slices.
