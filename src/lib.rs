@@ -192,9 +192,12 @@ pub use separation::{Evaluator, Normals};
 pub mod internal {
     pub use crate::numerics::lanes::MANY;
     pub use crate::numerics::polynomial::recentred;
+    pub use crate::numerics::random::Random;
     pub use crate::numerics::roots::bracketed;
     pub use crate::numerics::twice::Twice;
     pub use crate::numerics::{largest, nan_max};
     pub use crate::patch::turning_points::turning_points;
     pub use crate::separation::methods::report_newton::missing as missing_for_report_newton;
+    pub use crate::separation::methods::spectral::columns_by;
+    pub use crate::separation::values::Residence;
 }

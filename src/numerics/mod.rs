@@ -8,6 +8,7 @@ pub mod lanes;
 pub mod noise;
 pub mod polynomial;
 pub mod quadrature;
+pub mod random;
 pub mod roots;
 pub mod sign_changes;
 pub mod slopes;

@@ -30,7 +30,7 @@ mod relief;
 mod rounding;
 mod samples;
 pub(crate) mod span;
-mod values;
+pub(crate) mod values;
 pub(crate) mod wheel_surface;
 
 pub use axis::EtaAxis;

@@ -1,10 +1,12 @@
 //! Rails that vary along the track: closed forms, brute force in space, and CONTACT's results.
 
+use crate::common::repository;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::Value;
 use wheelrail::error::Result;
+use wheelrail::internal::Random;
 use wheelrail::lofted::{Joining, Loft, LoftSlice};
 use wheelrail::placement::{Track, Wheelset};
 use wheelrail::scene::{self, Scene};
@@ -13,7 +15,6 @@ use wheelrail::search::{
     WheelsetOnTrack,
 };
 use wheelrail::{Half, Pair, Profile, RailDistance, Segment, WheelDistance, standards};
-use wheelrail_report::random::Random;
 
 use super::campaign::scenes;
 
@@ -130,7 +131,7 @@ fn equal_slices(wheel: Profile) -> Result<()> {
 
 /// The crossing of the examples, and its march.
 fn crossing() -> March {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let folder = repository("examples/crossing");
     scene::march(&scene::load(&folder.join("crossing.toml")).unwrap(), &folder).unwrap().march
 }
 
@@ -139,7 +140,7 @@ fn crossing() -> March {
 fn brute(loft: &Loft, wheel: &[[f64; 2]], [offset, ahead]: [f64; 2], at: &Position, along: f64) -> f64 {
     let Roll::Fixed(roll) = at.roll else { panic!("a roll") };
     let rotation = at.rotation(roll).inverse();
-    let up = rotation * nalgebra::Vector3::z();
+    let up = rotation * wheelrail::nalgebra::Vector3::z();
     let height = |x: f64| {
         let k = wheel.partition_point(|p| p[0] <= x);
         let (a, b) = (wheel.get(k.checked_sub(1)?)?, wheel.get(k)?);
@@ -156,7 +157,7 @@ fn brute(loft: &Loft, wheel: &[[f64; 2]], [offset, ahead]: [f64; 2], at: &Positi
             }
             for half in 0..=2 * strip.cells() {
                 let [x, z] = strip.point(0.5 * half as f64, y).at;
-                let q = rotation * nalgebra::Vector3::new(x - offset, y - along - ahead, z);
+                let q = rotation * wheelrail::nalgebra::Vector3::new(x - offset, y - along - ahead, z);
                 let (mut gap, mut reached) = (0.0, true);
                 for _ in 0..12 {
                     let p = q + up * gap;
@@ -177,7 +178,7 @@ fn brute(loft: &Loft, wheel: &[[f64; 2]], [offset, ahead]: [f64; 2], at: &Positi
 #[test]
 fn no_place_of_the_surface_is_lower_than_first_touch() -> Result<()> {
     let mut march = crossing();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let folder = repository("examples/crossing");
     let wheel = standards::wheel("S1002")?;
     let section = wheelrail::profile::Section::own_axes(&wheel, wheelrail::Side::Wheel);
     let polygon: Vec<[f64; 2]> = (-6900..=6400)
@@ -196,7 +197,8 @@ fn no_place_of_the_surface_is_lower_than_first_touch() -> Result<()> {
         march.position = position(lateral, yaw, roll);
         let z = march.at(along)?.rows.iter().find(|row| row.side == TrackSide::Right).unwrap().z;
         // The wheel's profile origin: SPACING/2 out along the axle and RADIUS below it.
-        let origin = march.position.rotation(roll) * nalgebra::Vector3::new(SPACING / 2.0, 0.0, -RADIUS);
+        let origin =
+            march.position.rotation(roll) * wheelrail::nalgebra::Vector3::new(SPACING / 2.0, 0.0, -RADIUS);
         let offset = [origin.x + lateral - SPACING / 2.0, origin.y];
         let found = z + RADIUS + origin.z;
         let expected = -brute(&list, &polygon, offset, &march.position, along);
@@ -288,7 +290,7 @@ fn a_list_without_features_ends_where_its_slices_do_not_correspond() -> Result<(
 
 /// The cases of the reference file, one group after another.
 pub(super) fn cases() -> Vec<Value> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference_along/along_track.json");
+    let path = repository("tests/reference_along/along_track.json");
     let file: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     file["cases"].as_array().unwrap().clone()
 }
@@ -386,7 +388,7 @@ fn heights_of_first_touch_are_contact_s_and_a_brute_force_s() -> Result<()> {
 
 #[test]
 fn what_is_doubtful_is_warned_of() {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/crossing");
+    let own = repository("examples/crossing");
     let folder = tempfile::tempdir().unwrap();
     let list = std::fs::read_to_string(own.join("crossing.slcs")).unwrap();
     let list = list.replace("   1              method", "   2              method");

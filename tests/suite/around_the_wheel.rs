@@ -1,10 +1,12 @@
 //! Wheels that vary around their axle: closed forms, brute force in space, and CONTACT's results.
 
+use crate::common::repository;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::Value;
 use wheelrail::error::Result;
+use wheelrail::internal::Random;
 use wheelrail::lofted::{Flat, Joining, LoftSlice, LoftedWheel};
 use wheelrail::placement::{Track, Wheelset};
 use wheelrail::profile::Section;
@@ -16,7 +18,6 @@ use wheelrail::search::{
 use wheelrail::{
     Arc as Segments, Half, Pair, Profile, RailDistance, Segment, Side, WheelDistance, standards,
 };
-use wheelrail_report::random::Random;
 
 use super::campaign::scenes;
 
@@ -185,7 +186,7 @@ fn brute(
         let (sin, cos) = angle.sin_cos();
         for [x, z] in wheel {
             let rolling = share(angle) * (RADIUS - z);
-            let p = rotation * nalgebra::Vector3::new(*x, rolling * sin, -rolling * cos);
+            let p = rotation * wheelrail::nalgebra::Vector3::new(*x, rolling * sin, -rolling * cos);
             let height = rail.height(p.x + origin[0]);
             let gap = p.z + origin[1] - height;
             least = if gap.is_nan() { least } else { least.min(gap) };
@@ -219,7 +220,8 @@ fn no_place_of_a_wheel_is_lower_than_first_touch() -> Result<()> {
         march.position = position(lateral, yaw, roll);
         let found = of_right(&march.turned(away - turned)?)?;
         // The axle's middle at the height R over the top of rail: the wheel's centre SPACING/2 out along the axle.
-        let centre = march.position.rotation(roll) * nalgebra::Vector3::new(SPACING / 2.0, 0.0, 0.0);
+        let centre =
+            march.position.rotation(roll) * wheelrail::nalgebra::Vector3::new(SPACING / 2.0, 0.0, 0.0);
         let origin = [centre.x + lateral - top.rail_x(), centre.z + RADIUS - top.rail_z()];
         let expected = -brute(&polygon, &below, |angle| share(angle - away), origin, &march.position);
         let place = format!("{:?} at {away}: {} and {expected} {found:?}", march.position, found.z);
@@ -360,7 +362,7 @@ fn wheels_that_make_no_surface_are_refused_by_the_key() -> Result<()> {
 
 /// The cases of a group of the reference file.
 pub(super) fn cases(group: &str) -> Vec<Value> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference_along/along_track.json");
+    let path = repository("tests/reference_along/along_track.json");
     let file: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     file["cases"].as_array().unwrap().iter().filter(|case| case["group"] == group).cloned().collect()
 }

@@ -4,12 +4,13 @@
 //! form are in its own test.
 
 use twofloat::TwoFloat;
-use wheelrail::Interval;
-use wheelrail::load::curvatures;
+use wheelrail::load::{curvatures, feasibility};
 use wheelrail::patch::{Patch, Slicer, Window};
 use wheelrail::placement::{Pair, Placement};
-use wheelrail::profile::{Arc, Half, Profile, Segment};
+use wheelrail::profile::{Arc, Half, Profile, Segment, standards};
+use wheelrail::search::{Pose, ProfilePair, Selection};
 use wheelrail::separation::Evaluator;
+use wheelrail::{Interval, Result};
 
 /// Relative error of s \[1\]: 1e-13 is promised over both contact segments, which is everywhere here. Measured: two
 /// roundings where C is at a profile's own flattest point or on a line, and eight on a sphere at an angle, where
@@ -220,4 +221,20 @@ fn polar_area(placement: &Placement, delta: f64) -> f64 {
         sum += 0.5 * low * low;
     }
     sum * std::f64::consts::TAU / f64::from(RAYS)
+}
+
+#[test]
+fn a_contact_on_a_kink_is_where_the_closed_segments_cross() -> Result<()> {
+    // The flange tip of this drawing: a kink of 10° whose arcs, drawn with a step of 2 µm, cross 11 µm beside it.
+    let pair = Pair::new(standards::rail("56E1")?, standards::wheel("APTA-120")?, 625.0)?;
+    let profiles = ProfilePair::new(&pair)?;
+    let mut search = profiles.search();
+    let contact =
+        search.touch(&Pose::new(8.045, 0.0, 0.0)?, &Selection { within: 0.0, apart: 0.0 })?.contacts[0];
+    assert!(contact.kink(), "{contact:?}");
+    let placement = contact.placed(&pair)?;
+    let z = placement.wheel().point().station.z;
+    assert!((z + 9.525_298_313_755).abs() < 1e-12, "{z}");
+    assert!(feasibility(&placement).is_some_and(|found| found.feasible));
+    Ok(())
 }

@@ -16,7 +16,7 @@ pub fn references() -> Vec<ReferenceFile> {
 
 /// All reference files of a folder below `tests`, in order of their names; at least one.
 pub fn references_in(name: &str) -> Vec<ReferenceFile> {
-    let files = std::fs::read_dir(folder(name)).expect("the folder of reference values");
+    let files = std::fs::read_dir(repository("tests").join(name)).expect("the folder of reference values");
     let mut files: Vec<_> = files.map(|entry| entry.expect("a file").path()).collect();
     files.retain(|path| path.extension().is_some_and(|e| e == "json"));
     files.sort();
@@ -47,9 +47,10 @@ pub fn holds<S: Strategy>(
     }
 }
 
-/// A folder below `tests`.
-pub fn folder(name: &str) -> std::path::PathBuf {
-    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name)
+/// A folder or file of the repository.
+pub fn repository(path: &str) -> std::path::PathBuf {
+    let tests = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().expect("the repository around tests").join(path)
 }
 
 /// Largest errors of some points.

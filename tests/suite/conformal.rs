@@ -1,6 +1,6 @@
 //! The normal gap of conformal contact against 60-digit values and closed forms.
 
-use crate::common::{folder, profile};
+use crate::common::{profile, repository};
 use wheelrail::Evaluator;
 use wheelrail::Interval;
 use wheelrail::case::{Case, Profiles, Run, SILENT};
@@ -61,7 +61,7 @@ fn closest_distances_agree_with_the_normal_gap_of_every_scene() {
 
 #[test]
 fn every_file_of_values_is_embedded() {
-    let files = std::fs::read_dir(folder("../crates/report/src/conformal/reference"))
+    let files = std::fs::read_dir(repository("crates/report/src/conformal/reference"))
         .expect("the folder of reference values");
     let paths = files.map(|entry| entry.expect("a file").path());
     let mut on_disk: Vec<_> = paths.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();

@@ -13,9 +13,9 @@ use placements::{KINDS, Placed, Stock};
 use rayon::prelude::*;
 use wheelrail::Interval;
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
+use wheelrail::internal::Random;
 use wheelrail::separation::{EtaAxis, FULL_PRECISION};
 use wheelrail::{Component, Patch, Window};
-use wheelrail_report::random::Random;
 
 /// Seeds of every kind of pair in one ordinary test run.
 const SEEDS: u64 = 50;

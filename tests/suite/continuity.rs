@@ -1,7 +1,6 @@
 //! What a wheel sinks by under a load, and what its contacts carry, is continuous as the wheel moves sideways.
 
-use std::path::Path;
-
+use crate::common::repository;
 use wheelrail::case::sites;
 use wheelrail::{Result, scene};
 
@@ -29,8 +28,8 @@ fn carried((rail, wheel, yaw, _): &(&str, &str, f64, [f64; 2]), offset: f64) -> 
         "rail = {{ {rail} }}\nwheel = {{ {wheel}, radius = 460.0 }}\n\
          contact = {{ offset = {offset:?}, yaw = {yaw:?} }}\npatch = {{ load = 60e3, frame = \"weighted\" }}\n"
     );
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/profiles"));
-    let sites = sites(&scene::resolve(&scene::parse(&text, false)?, folder, "continuity")?)?;
+    let folder = repository("examples/profiles");
+    let sites = sites(&scene::resolve(&scene::parse(&text, false)?, &folder, "continuity")?)?;
     let sunk = sites[0].approach() / sites[0].contact.placement.upright();
     Ok([sunk, sites.iter().filter_map(|site| site.normal_load).sum()])
 }

@@ -1,7 +1,6 @@
 //! Sections through bodies that vary go through the places of contact.
 
-use std::path::Path;
-
+use crate::common::repository;
 use wheelrail::error::Result;
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{Cut, March, SweepRow, TrackSide};
@@ -11,7 +10,7 @@ const NEAR: f64 = 3e-3;
 
 /// A march of one of the examples, with the wheelset yawed.
 fn example(name: &str, yaw: f64) -> Result<March> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
+    let folder = repository("examples").join(name);
     let mut scene: Scene = scene::load(&folder.join(format!("{name}.toml")))?;
     if let Some(wheelset) = &mut scene.wheelset {
         wheelset.yaw = yaw;

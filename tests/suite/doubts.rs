@@ -1,13 +1,14 @@
 //! What is possible but seldom meant is a warning with its number; what engineers mean is none.
 
+use crate::common::repository;
 use std::path::{Path, PathBuf};
 
 use wheelrail::case::{DoubtKind, Landmarks, Run, SILENT, SideLandmarks};
+use wheelrail::internal::Random;
 use wheelrail::placement::{Pair, RailDistance, WheelDistance};
 use wheelrail::profile::{Profile, inclination, standards, trace};
 use wheelrail::search::{ONE_CONTACT, Position, Roll, Selection, Sweep, SweepRow, WheelsetOnTrack};
 use wheelrail::{Result, scene};
-use wheelrail_report::random::Random;
 
 use crate::campaign;
 
@@ -307,11 +308,11 @@ fn the_page_on_sweeps_lists_every_doubt() {
 
 #[test]
 fn the_examples_leave_no_doubt() -> Result<()> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes"));
+    let folder = repository("examples/scenes");
     let mut read = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
+    for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
-        let Ok(case) = scene::resolve(&scene::load(&path)?, folder, "example") else {
+        let Ok(case) = scene::resolve(&scene::load(&path)?, &folder, "example") else {
             panic!("{}", path.display());
         };
         let doubts: Vec<String> = Run::new(case, SILENT)?.warnings();

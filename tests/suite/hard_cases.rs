@@ -1,5 +1,6 @@
 //! Every file of `crates/report/src/hard_cases` against its 60-digit values and its status.
 
+use crate::common::repository;
 use std::collections::{BTreeMap, BTreeSet};
 
 use wheelrail_report::hard_case::{FILES, METHODS, Status, hard_cases};
@@ -57,7 +58,7 @@ fn no_bound_is_slack() {
 
 #[test]
 fn every_file_is_embedded() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/report/src/hard_cases");
+    let folder = repository("crates/report/src/hard_cases");
     let entries = std::fs::read_dir(folder).expect("the folder of hard cases");
     let on_disk: BTreeSet<String> = entries
         .filter_map(|entry| {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use wheelrail::case::{Run, SILENT};
 use wheelrail::{Evaluator, scene};
 
-use super::common::folder;
+use super::common::repository;
 
 /// A file.
 #[derive(Deserialize)]
@@ -126,7 +126,7 @@ fn love(cells: [f64; 2], step: [f64; 2]) -> f64 {
 #[test]
 fn every_scene_is_as_its_status_says() {
     let mut seen = 0;
-    for entry in std::fs::read_dir(folder("hard_scenes")).expect("the folder of hard scenes") {
+    for entry in std::fs::read_dir(repository("tests/hard_scenes")).expect("the folder of hard scenes") {
         let text = std::fs::read_to_string(entry.expect("a file").path()).expect("a readable file");
         let hard: HardScene = serde_json::from_str(&text).expect("its format");
         let difference = hard.difference();

@@ -1,5 +1,6 @@
 //! Imports run one way, between rooms and between files.
 
+use crate::common::repository;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -53,10 +54,6 @@ struct File {
 
 /// All files of one crate by their modules.
 struct Tree(BTreeMap<Names, File>);
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a source folder").flatten() {
@@ -210,7 +207,7 @@ impl Tree {
     }
 
     fn of_folder(folder: &str) -> Self {
-        let folder = root().join(folder);
+        let folder = repository(folder);
         let mut files = Vec::new();
         sources(&folder, &mut files);
         Self::of(files.iter().filter(|file| !file.components().any(|c| c.as_os_str() == "tests")).filter_map(
@@ -361,7 +358,7 @@ fn no_room_imports_upward() {
 
 #[test]
 fn one_room_touches_the_disk() {
-    let src = root().join("src");
+    let src = repository("src");
     let mut files = Vec::new();
     sources(&src, &mut files);
     let elsewhere = files.iter().filter(|file| !file.starts_with(src.join("files")));

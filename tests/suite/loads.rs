@@ -1,5 +1,6 @@
 //! What contacts carry adds up to what wheels and axles are loaded with.
 
+use crate::common::repository;
 use std::path::Path;
 
 use wheelrail::case::{Run, SILENT, Site, sites};
@@ -195,14 +196,14 @@ fn the_weighted_frame_moves_no_body() -> Result<()> {
 /// Decks of every example add up to the load that it names.
 #[test]
 fn the_decks_of_every_example_carry_its_load() -> Result<()> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes"));
+    let folder = repository("examples/scenes");
     let mut loaded = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
+    for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
         let example = scene::load(&path)?;
         let of_wheel = example.patch.as_ref().and_then(|patch| patch.load);
         let of_axle = example.wheelset.as_ref().and_then(|wheelset| wheelset.load);
-        let sites = sites(&scene::resolve(&example, folder, "example")?)?;
+        let sites = sites(&scene::resolve(&example, &folder, "example")?)?;
         let totals = [Some(TrackSide::Left), Some(TrackSide::Right), None].map(|side| sum(&sites, side));
         if let Some(load) = of_wheel {
             let carried = totals.iter().filter(|total| **total > 0.0);

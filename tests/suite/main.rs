@@ -32,6 +32,7 @@ mod interpenetration;
 mod invariances;
 mod layers;
 mod loads;
+mod machines;
 mod measure;
 mod measured_files;
 mod measured_scene;

@@ -317,7 +317,6 @@ const INSTRUMENTS: [(&str, [f64; 3]); 4] = [
 /// before it calculates, and writes the points as they were.
 const RIGHT_TURNED_BY: f64 = 0.0032;
 
-#[cfg(feature = "files")]
 #[test]
 fn instruments_have_the_same_values() -> Result<()> {
     let Some(contact) = std::env::var_os("WHEELRAIL_CONTACT") else { return Ok(()) };
@@ -328,7 +327,7 @@ fn instruments_have_the_same_values() -> Result<()> {
             measured::Options { curve: Some(CurveKind::Interpolation), ..measured::Options::default() };
         let read = measured::profile(file, &bytes, Side::Wheel, &curve)?.profile;
         let turn = if file.starts_with("right") { RIGHT_TURNED_BY } else { 0.0 };
-        let read = read.rotated(nalgebra::UnitComplex::new(turn));
+        let read = read.rotated(wheelrail::nalgebra::UnitComplex::new(turn));
         let measures = measure(&read, Side::Wheel, None, &MeasureOptions::default())?;
         let found =
             [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr].map(|q| value(&measures, q));

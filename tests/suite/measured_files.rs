@@ -1,12 +1,13 @@
 //! Tests the whole way from bytes to a profile, on the samples in tests/profiles.
 
+use crate::common::repository;
+use wheelrail::internal::Random;
 use wheelrail::measured::{
     Check, CurveKind, Format, Measured, Options, Repair, SectionOfList, SliceList, Unit, body, profile,
     section, write,
 };
 use wheelrail::profile::Section;
 use wheelrail::{Error, Profile, Result, Side, standards};
-use wheelrail_report::random::Random;
 
 mod curves;
 mod questions;
@@ -14,8 +15,7 @@ mod slices;
 
 /// Returns the bytes of a sample in tests/profiles.
 fn bytes(name: &str) -> Vec<u8> {
-    std::fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/profiles").join(name))
-        .expect(name)
+    std::fs::read(repository("tests/profiles").join(name)).expect(name)
 }
 
 /// Makes the profile of a sample: of a rail where the file names no body.

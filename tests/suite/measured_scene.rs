@@ -1,6 +1,7 @@
 //! `examples/scenes/measured.toml`: two measured files from end to end, against the drawings they were sampled from.
 
-use std::path::Path;
+use crate::common::repository;
+use std::path::PathBuf;
 
 use wheelrail::case::{Part, Run, SILENT};
 use wheelrail::scene::{self, Scene};
@@ -12,14 +13,14 @@ const SEPARATION_MM: f64 = 4e-3;
 /// The same points interpolated: likewise, of 0.056 µm.
 const INTERPOLATED_MM: f64 = 1.2e-4;
 
-fn folder() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes"))
+fn folder() -> PathBuf {
+    repository("examples/scenes")
 }
 
 fn run(name: &str, change: impl Fn(&mut Scene)) -> Run {
     let mut scene = scene::load(&folder().join(name)).unwrap();
     change(&mut scene);
-    Run::new(scene::resolve(&scene, folder(), name).unwrap(), SILENT).unwrap()
+    Run::new(scene::resolve(&scene, &folder(), name).unwrap(), SILENT).unwrap()
 }
 
 /// Largest difference of s \[mm\] over the drawn profiles' patch; the grids are the same.

@@ -5,8 +5,8 @@ use std::path::Path;
 use crate::campaign;
 use wheelrail::Result;
 use wheelrail::case::{Run, SILENT};
+use wheelrail::internal::Random;
 use wheelrail::scene;
-use wheelrail_report::random::Random;
 
 /// Runs a scene in a frame, and gives the rates of pitch of all its parts \[rad/s\].
 fn pitches(scene: &str, frame: &str) -> Result<Vec<f64>> {

@@ -1,5 +1,6 @@
 //! Contacts with rails that vary along the track: separation, normals, patches and runs.
 
+use crate::common::repository;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,6 +8,7 @@ use serde_json::Value;
 use wheelrail::Interval;
 use wheelrail::case::{ALONG, MarchCase, MarchCourse, Part, Run, SILENT};
 use wheelrail::error::Result;
+use wheelrail::internal::Random;
 use wheelrail::lofted::{Joining, Loft, LoftedBody};
 use wheelrail::mesh::{StripCounts, StripMesh};
 use wheelrail::placement::{Motion, Pitch, Rates};
@@ -16,7 +18,6 @@ use wheelrail::{
     Evaluator, Half, ONE_CONTACT, Pair, Patch, Placement, Pose, Profile, ProfilePair, Segment, Selection,
     Window, feasibility,
 };
-use wheelrail_report::random::Random;
 
 use super::along_track::{RADIUS, cases, march_over, position, right, scene_of, slices};
 use super::campaign::scenes;
@@ -296,7 +297,7 @@ fn patches_over_random_rails_are_what_a_flood_fill_finds() -> Result<()> {
 
 /// The folder of an example and the text of its scene.
 pub(super) fn example(name: &str) -> (PathBuf, String) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
+    let folder = repository("examples").join(name);
     let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
     (folder, text)
 }

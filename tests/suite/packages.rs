@@ -1,5 +1,6 @@
 //! What a registry gets holds every file that its sources include.
 
+use crate::common::repository;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
@@ -70,7 +71,7 @@ fn plain(path: &Path) -> PathBuf {
 fn listed(package: &str) -> BTreeSet<PathBuf> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["package", "--list", "--allow-dirty", "--locked", "--offline", "-p", package]);
-    let output = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).output().expect("cargo");
+    let output = cargo.current_dir(repository("")).output().expect("cargo");
     assert!(output.status.success(), "{package}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8_lossy(&output.stdout).lines().map(PathBuf::from).collect()
 }
@@ -79,7 +80,7 @@ fn listed(package: &str) -> BTreeSet<PathBuf> {
 fn packages_hold_what_their_sources_include() {
     let mut included = 0;
     for (package, folder) in PACKAGES {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let folder = repository(folder);
         let files = listed(package);
         let (mut wanted, mut tests) = (Vec::new(), Vec::new());
         for file in files

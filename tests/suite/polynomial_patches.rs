@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use crate::campaign;
-use crate::common::folder;
+use crate::common::repository;
 use crate::flood_fill::{Case, Open, check, check_all};
 use wheelrail::Interval;
 use wheelrail::case::{Run, SILENT, contacts};
+use wheelrail::internal::Random;
 use wheelrail::load::feasibility;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
@@ -14,7 +15,6 @@ use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape};
 use wheelrail::scene;
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
 use wheelrail::separation::{Evaluator, Method};
-use wheelrail_report::random::Random;
 
 /// Points on an axis of the grid whose least s is compared with that of [`feasibility`].
 const POINTS: usize = 160;
@@ -155,7 +155,7 @@ fn patches_over_polynomials_are_what_a_flood_fill_finds() {
 
 /// The first contacts of a scene of `tests/defects`, as cases of its own approach and grid.
 fn scene_cases(name: &str) -> Vec<Case> {
-    let path = folder("defects").join(name);
+    let path = repository("tests/defects").join(name);
     let text = std::fs::read_to_string(&path).expect("a scene");
     let scene: scene::Scene = scene::parse(&text, true).expect("a scene");
     let resolved = scene::resolve(&scene, Path::new("."), name).expect("a case");
@@ -188,7 +188,7 @@ fn scenes_with_parts_that_were_missed() {
                 "{name}"
             );
         }
-        let text = std::fs::read_to_string(folder("defects").join(name)).expect("a scene");
+        let text = std::fs::read_to_string(repository("tests/defects").join(name)).expect("a scene");
         let scene = scene::parse(&text, true).expect("a scene");
         let run = scene::resolve(&scene, Path::new("."), name).and_then(|case| Run::new(case, SILENT));
         for part in &run.expect("a run").parts {

@@ -7,13 +7,13 @@ mod exact;
 mod twice;
 
 use exact::{Exact, Found, doubled};
+use wheelrail::internal::Random;
 use wheelrail::mesh::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Shape, Side, standards};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
 use wheelrail_report::errors::{inside_contact, over_contact};
-use wheelrail_report::random::Random;
 use wheelrail_report::reference::ReferenceFile;
 use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
 
@@ -384,7 +384,7 @@ fn promises_are_kept_on_random_pairs() {
 #[test]
 fn exact_values_are_the_60_digit_ones() {
     let yawed = ["yawed_crown_on_cone", "yawed_60E1_S1002_tread", "yawed_flange"].map(|name| {
-        let path = crate::common::folder("reference_yawed").join(name).with_extension("json");
+        let path = crate::common::repository("tests/reference_yawed").join(name).with_extension("json");
         let mut values: serde_json::Value =
             serde_json::from_str(&std::fs::read_to_string(path).expect("values")).expect("JSON");
         values["boundary"] = serde_json::json!([]);

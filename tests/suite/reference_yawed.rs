@@ -1,6 +1,6 @@
 //! Yawed wheels against the 60-digit values of `tests/reference_yawed`, to bounds near those of the unyawed ones.
 
-use crate::common::{ReferenceFile, Worst, folder};
+use crate::common::{ReferenceFile, Worst, repository};
 use wheelrail::patch::Slicer;
 use wheelrail::placement::Placement;
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
@@ -19,8 +19,8 @@ struct Yawed {
 const NAMES: [&str; 3] = ["yawed_crown_on_cone", "yawed_60E1_S1002_tread", "yawed_flange"];
 
 fn load(name: &str) -> (Yawed, Placement) {
-    let text =
-        std::fs::read_to_string(folder("reference_yawed").join(name).with_extension("json")).expect("values");
+    let text = std::fs::read_to_string(repository("tests/reference_yawed").join(name).with_extension("json"))
+        .expect("values");
     let mut values: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let boundary = std::mem::replace(&mut values["boundary"], serde_json::json!([]));
     let boundary = serde_json::from_value(boundary).expect("a boundary");

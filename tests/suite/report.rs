@@ -1,5 +1,6 @@
 //! The report, measured small: every section, every file, every column.
 
+use crate::common::repository;
 use std::sync::LazyLock;
 
 use wheelrail::measured::CUTOFF_WAVELENGTH;
@@ -80,7 +81,7 @@ fn accuracy_csv_has_its_columns_and_every_row() {
 #[test]
 fn timed_processes_are_those_of_the_examples() {
     for (process, example) in PROCESSES.iter().zip(["wheelset", "60e1_s1002"]) {
-        let path = format!("{}/examples/scenes/{example}.toml", env!("CARGO_MANIFEST_DIR"));
+        let path = repository(&format!("examples/scenes/{example}.toml"));
         let text = std::fs::read_to_string(path).expect("an example");
         let [mut timed, mut example]: [Scene; 2] =
             [process.scene, &text].map(|text| parse(text, false).expect("a scene"));
@@ -92,7 +93,7 @@ fn timed_processes_are_those_of_the_examples() {
 
 #[test]
 fn every_reference_file_is_embedded() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/report/src/reference");
+    let folder = repository("crates/report/src/reference");
     let mut on_disk: Vec<String> = std::fs::read_dir(folder)
         .expect("the folder of reference values")
         .filter_map(|entry| {

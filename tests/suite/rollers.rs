@@ -1,6 +1,7 @@
 //! Wheels on rollers: closed forms of bodies of revolution, and CONTACT's results for a wheelset on a roller rig.
 
-use std::path::Path;
+use crate::common::repository;
+use std::path::PathBuf;
 
 use serde_json::Value;
 use wheelrail::case::Arrangement;
@@ -14,8 +15,8 @@ use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
 use wheelrail::{Arc, Evaluator, Half, Interval, Pair, Patch, Placement, Profile, Segment, Window};
 use wheelrail_report::reference::ReferenceScene;
 
-fn folder() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference_rollers"))
+fn folder() -> PathBuf {
+    repository("tests/reference_rollers")
 }
 
 /// Returns a profile of one arc through the origin, level there; 0 mm is a line.
@@ -132,7 +133,7 @@ fn first_touch_on_a_roller_rig_agrees_with_contact() {
     let cases = file["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 30);
     for radius in [350.0, 800.0] {
-        let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
+        let case = scene::resolve(&rig(radius, ""), &folder(), "").unwrap();
         let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
         let mut search = system.search();
         for given in cases.iter().filter(|given| given["roller_radius"] == radius as u64) {
@@ -158,7 +159,7 @@ fn forces_on_a_roller_rig_agree_with_contact() {
     let modulus = effective_modulus(&Elastic::STEEL, &Elastic::STEEL);
     let [mut forces, mut references] = [[0.0f64; 2]; 2];
     for radius in [350.0, 800.0] {
-        let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
+        let case = scene::resolve(&rig(radius, ""), &folder(), "").unwrap();
         let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
         let (mut search, pair) = (system.search(), &case.profiles().right.pair);
         let cases = file["cases"].as_array().unwrap().iter();
@@ -203,7 +204,7 @@ fn forces_on_a_roller_rig_agree_with_contact() {
 
 /// Gives the contacts of both sides on a rig at some positions.
 fn found_on_rig(radius: f64) -> Vec<(Contact, Pair)> {
-    let case = scene::resolve(&rig(radius, ""), folder(), "").unwrap();
+    let case = scene::resolve(&rig(radius, ""), &folder(), "").unwrap();
     let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
     let (mut search, pair) = (system.search(), &case.profiles().right.pair);
     let mut found = Vec::new();

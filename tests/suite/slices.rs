@@ -1,13 +1,14 @@
 //! Scenes over rails that vary along the track and wheels that vary around: `tests/profiles/slices`.
 
-use std::path::Path;
+use crate::common::repository;
+use std::path::PathBuf;
 
 use wheelrail::case::{Run, SILENT};
 use wheelrail::profile::{Section, Side};
 use wheelrail::scene::{self, Scene};
 
-fn folder() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/profiles/slices"))
+fn folder() -> PathBuf {
+    repository("tests/profiles/slices")
 }
 
 fn scene(rail: &str, wheel: &str) -> Scene {
@@ -22,13 +23,16 @@ const RAIL: &str = "file = \"rail.slcs\"\nmirror = false\nflip_z = false\nalong 
 const WHEEL: &str = "file = \"wheel.slcw\"\nmirror = false\nflip_z = false\nangle = ";
 
 fn complaint(rail: &str, wheel: &str) -> String {
-    scene::resolve(&scene(rail, wheel), folder(), "").err().map(|error| error.to_string()).unwrap_or_default()
+    scene::resolve(&scene(rail, wheel), &folder(), "")
+        .err()
+        .map(|error| error.to_string())
+        .unwrap_or_default()
 }
 
 #[test]
 fn a_section_runs_and_its_summary_says_where_it_is() {
     let scene = scene(&format!("{RAIL}130.0"), &format!("{WHEEL}0.35"));
-    let run = Run::new(scene::resolve(&scene, folder(), "").unwrap(), SILENT).unwrap();
+    let run = Run::new(scene::resolve(&scene, &folder(), "").unwrap(), SILENT).unwrap();
     assert!(run.refusals().is_empty(), "{:?}", run.refusals());
     let [rail, wheel] =
         run.case.measured().both().map(|record| record.as_ref().unwrap().cut.clone().unwrap());
@@ -46,7 +50,7 @@ fn a_section_runs_and_its_summary_says_where_it_is() {
 fn the_middle_of_a_flat_is_as_deep_as_its_slice() {
     let height = |angle: f64| {
         let scene = scene(&format!("{RAIL}0.0"), &format!("{WHEEL}{angle}\ncurve = \"interpolation\""));
-        let case = scene::resolve(&scene, folder(), "").unwrap();
+        let case = scene::resolve(&scene, &folder(), "").unwrap();
         let run = Run::new(case, SILENT).unwrap();
         Section::own_axes(run.parts[0].site.contact.placement.wheel().profile(), Side::Wheel).height(0.0)
     };

@@ -2,17 +2,15 @@
 //!
 //! `WHEELRAIL_CAMPAIGN=2000 cargo test steps -- --nocapture` is the long run.
 
-use std::path::Path;
-
 use rayon::prelude::*;
 use wheelrail::case::{Part, Run, SILENT};
-use wheelrail::internal::missing_for_report_newton;
+use wheelrail::internal::{Random, missing_for_report_newton};
 use wheelrail::placement::Placement;
 use wheelrail::scene;
 use wheelrail::separation::{EtaAxis, Evaluator, FULL_PRECISION, Method, Values, plan};
-use wheelrail_report::random::Random;
 
 use crate::campaign;
+use crate::common::repository;
 use crate::conformal_brute::oracle::{Line, Revolved};
 use crate::conformal_brute::placements::{KINDS, Placed, Stock};
 use crate::in_time::InTime;
@@ -225,10 +223,10 @@ fn every_method_knows_steps_and_ends_of_random_scenes() {
 
 /// Computes a scene of `tests/defects` by a method; `None` leaves the scene's own.
 fn part(name: &str, method: Option<Method>) -> Part {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/defects"));
+    let folder = repository("tests/defects");
     let mut scene = scene::load(&folder.join(name)).unwrap();
     scene.grid.method = method.or(scene.grid.method);
-    let run = Run::new(scene::resolve(&scene, folder, name).unwrap(), SILENT).unwrap();
+    let run = Run::new(scene::resolve(&scene, &folder, name).unwrap(), SILENT).unwrap();
     let warned = run.warnings();
     assert!(!warned.iter().any(|warning| warning.contains("NaN")), "{name}: {warned:?}");
     run.parts.into_iter().next().unwrap()

@@ -2,13 +2,13 @@
 
 use rayon::ThreadPoolBuilder;
 use wheelrail::error::Result;
+use wheelrail::internal::Random;
 use wheelrail::measured::{CurveKind, Format, Options};
 use wheelrail::search::ParallelSweep;
 use wheelrail::{
     Pair, Position, Profile, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, inclination,
     standards,
 };
-use wheelrail_report::random::Random;
 use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
 
 use super::campaign::scenes;

@@ -1,7 +1,6 @@
 //! Contact tables against direct searches: no error above the stated one, and the same bits on any number of threads.
 
-use std::path::Path;
-
+use crate::common::repository;
 use rayon::ThreadPoolBuilder;
 use wheelrail::case::{Arrangement, Case, table};
 use wheelrail::export::table_wrp;
@@ -51,8 +50,8 @@ fn case(profiles: &str, more: &str, sides: &str) -> Result<Case> {
         "{profiles}track = {{ gauge = 1435.0 }}\npatch = {{ load = {LOAD:?} }}\n\
          wheelset = {{ back_to_back = 1360.0, flange_back_x = -70.0{more} }}\n{sides}"
     );
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes"));
-    scene::resolve(&scene::parse(&text, false)?, folder, "table")
+    let folder = repository("examples/scenes");
+    scene::resolve(&scene::parse(&text, false)?, &folder, "table")
 }
 
 /// What a search has found of one quantity.

@@ -5,17 +5,17 @@ use std::f64::consts::FRAC_PI_6;
 use std::path::Path;
 
 use crate::campaign;
-use crate::common::{approached_references, folder, profile, two_crowns};
+use crate::common::{approached_references, profile, repository, two_crowns};
 use crate::in_time::InTime;
 use wheelrail::Interval;
 use wheelrail::case::{Run, SILENT, contacts};
+use wheelrail::internal::Random;
 use wheelrail::mesh::TriangleMesh;
 use wheelrail::patch::{Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, inclination, standards};
 use wheelrail::scene;
 use wheelrail::separation::Evaluator;
-use wheelrail_report::random::Random;
 
 /// Largest |s − δ| at a node of the boundary \[mm\]: the bound of s, and of δ's own rounding.
 const ON_BOUNDARY: f64 = 4e-12;
@@ -145,7 +145,7 @@ fn meshes_of_references_keep_every_promise() {
 #[test]
 fn meshes_of_example_scenes_keep_every_promise() {
     let mut parts = 0;
-    let scenes = folder("../examples/scenes");
+    let scenes = repository("tests/../examples/scenes");
     let mut files: Vec<_> =
         std::fs::read_dir(scenes).expect("the scenes").map(|file| file.expect("a file").path()).collect();
     files.sort();
@@ -234,7 +234,7 @@ fn random_chains_keep_their_angles() {
 
 #[test]
 fn a_cusp_at_a_profile_s_end_has_few_triangles() {
-    let text = std::fs::read_to_string(folder("defects/mesh-angle-cusp.json")).expect("a scene");
+    let text = std::fs::read_to_string(repository("tests/defects/mesh-angle-cusp.json")).expect("a scene");
     let scene = scene::parse(&text, true).expect("a scene");
     let case = scene::resolve(&scene, Path::new("."), "cusp").expect("a case");
     let (_, placement) = contacts(&case).expect("contacts").swap_remove(0);

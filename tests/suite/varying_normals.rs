@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use wheelrail::conformal::NormalGap;
 use wheelrail::error::Result;
+use wheelrail::internal::Random;
 use wheelrail::lofted::{Flat, Joining, Loft, LoftedBody, LoftedWheel};
 use wheelrail::{Evaluator, ONE_CONTACT, Pair, Patch, Placement, Pose, ProfilePair, Selection, Window};
 use wheelrail_check::check_site;
-use wheelrail_report::random::Random;
 
 use super::along_track::{RADIUS, slices};
 use super::campaign::scenes;

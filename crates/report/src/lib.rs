@@ -26,7 +26,6 @@ pub mod measurements;
 pub mod page;
 pub mod practice;
 pub mod processes;
-pub mod random;
 pub mod rates;
 pub mod reference;
 pub mod requirements;

@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use rayon::prelude::*;
 
 use super::inclined::{RADIUS, inclined_pair};
-use super::random::Random;
 use wheelrail::Interval;
 use wheelrail::error::{Error, Result};
+use wheelrail::internal::Random;
 use wheelrail::load::{Elastic, curvatures, effective_modulus};
 use wheelrail::measured::{self, CUTOFF_WAVELENGTH, CurveKind, Format, Options, write};
 use wheelrail::patch::{Patch, Window};

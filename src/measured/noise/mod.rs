@@ -8,6 +8,7 @@ pub use spread::{LEAST_SAMPLES, Spread, spread_text};
 
 use super::options::{CurveKind, Options};
 use crate::error::{Error, Result};
+use crate::numerics::random::Random;
 use crate::profile::{Profile, Side, trace};
 
 /// Default distance \[mm\] of the points of a profile that is measured once more: that of hand-held instruments.
@@ -31,7 +32,7 @@ const MOST_SAMPLES: usize = 1_000_000;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Deviates {
-    state: u64,
+    random: Random,
     /// The second deviate of a pair.
     spare: Option<f64>,
 }
@@ -39,7 +40,7 @@ pub struct Deviates {
 impl Deviates {
     /// Begins the stream with this number under a seed.
     pub fn new(seed: u64, number: u64) -> Self {
-        Self { state: mixed(mixed(seed.wrapping_add(GOLDEN)).wrapping_add(number)), spare: None }
+        Self { random: Random::stream(seed, number), spare: None }
     }
 
     /// Draws the next deviate: mean 0, standard deviation 1.
@@ -55,18 +56,8 @@ impl Deviates {
 
     /// Draws a number in (0, 1).
     fn uniform(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(GOLDEN);
-        ((mixed(self.state) >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+        ((self.random.bits() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
-}
-
-/// SplitMix64's step: 2⁶⁴ over the golden ratio, odd.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-fn mixed(state: u64) -> u64 {
-    let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// A profile as points at equal distances, to be measured again and again.

@@ -1,7 +1,7 @@
 //! Tests that readers survive bytes that no instrument wrote.
 
 use super::*;
-use wheelrail_report::random::Random;
+use crate::numerics::random::Random;
 
 const SNIPPETS: [&str; 18] = [
     "\n",

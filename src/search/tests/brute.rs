@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::numerics::interval::Interval;
+use crate::numerics::random::Random;
 use nalgebra::{Point3, UnitComplex, Vector3};
-use wheelrail_report::random::Random;
 
 /// A random pair at a pose; the wheel is sampled in space, in track axes.
 struct RandomScene {

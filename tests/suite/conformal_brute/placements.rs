@@ -1,9 +1,9 @@
 //! Placed pairs as engineers have them, and some that nobody has.
 
 use wheelrail::conformal::NormalGap;
+use wheelrail::internal::Random;
 use wheelrail::profile::{Arc, Half, Polynomial, Profile, Segment, Shape, inclination, standards};
 use wheelrail::{ONE_CONTACT, Pair, Placement, Pose, ProfilePair, Selection};
-use wheelrail_report::random::Random;
 use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
 
 /// Yaw and skew angles \[rad\].

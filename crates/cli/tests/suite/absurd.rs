@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::campaign;
 use crate::programs::folder;
-use wheelrail_report::random::Random;
+use wheelrail::internal::Random;
 
 /// Seed of the scenes, printed with every failure.
 const SEED: u64 = 0x000A_B50B_D001;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use wheelrail_report::random::Random;
+use wheelrail::internal::Random;
 
 use crate::campaign;
 

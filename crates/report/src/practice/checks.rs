@@ -3,8 +3,8 @@
 use super::brute::{PairOfVertices, Stance};
 use super::fill::filled;
 use super::row::PracticeRow;
-use crate::random::Random;
 use wheelrail::error::{ErrorKind, Result};
+use wheelrail::internal::Random;
 use wheelrail::mesh;
 use wheelrail::patch::{Component, End, Patch, Window};
 use wheelrail::placement::{Pair, Placement, RailDistance, WheelDistance};

@@ -11,9 +11,9 @@ pub use instrument::Instrument;
 
 use serde::Deserialize;
 
-use super::random::Random;
 use outline::{OutlinePoint, drawn, recorded, rounded, worn};
 use wheelrail::error::Result;
+use wheelrail::internal::Random;
 use wheelrail::measured::{self, Format, Measured, Options, write};
 use wheelrail::profile::{Profile, Side, standards};
 

@@ -1,7 +1,7 @@
 //! Makes outlines of bodies as dense chains of points \[mm\], from left to right: drawn, worn, measured.
 
 use super::instrument::Instrument;
-use crate::random::Random;
+use wheelrail::internal::Random;
 use wheelrail::profile::{Profile, Side, trace};
 
 /// Distance of an outline's points \[mm\]: its chords are off a 3 mm radius by 2e-5 mm, far less than any

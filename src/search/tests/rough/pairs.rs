@@ -1,7 +1,7 @@
 //! Random rough pairs, from their seeds.
 
 use super::*;
-use wheelrail_report::random::Random;
+use crate::numerics::random::Random;
 
 /// A path that is sampled: its direction turns by a curvature over each length.
 struct Path {

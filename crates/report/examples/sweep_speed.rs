@@ -1,4 +1,4 @@
-//! Positions per second of a sweep on one core: `cargo run --release --example sweep_speed`.
+//! Positions per second of a sweep on one core: `cargo run --release -p wheelrail-report --example sweep_speed`.
 //!
 //! The rows of the report's table, without the rest of the report.
 #![allow(clippy::print_stdout)]

@@ -1,8 +1,17 @@
 //! Random numbers from a seed: the same in every run. Uniform ones are equal on every machine, normal ones but for rounding.
 
-/// A stream of random numbers by SplitMix64; normal ones are made by Box–Muller.
+/// A stream of random numbers by SplitMix64 (Steele, Lea, Flood 2014); normal ones are made by Box–Muller.
 #[derive(Debug, Clone)]
 pub struct Random(u64);
+
+/// 2⁶⁴ over the golden ratio, odd.
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+fn mixed(state: u64) -> u64 {
+    let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
 
 impl Random {
     /// Makes the stream of a seed. Every seed gives another stream.
@@ -10,13 +19,15 @@ impl Random {
         Self(seed)
     }
 
+    /// Makes the stream with a number under a seed. Streams of other numbers are independent of each other.
+    pub fn stream(seed: u64, number: u64) -> Self {
+        Self(mixed(Self(seed).bits().wrapping_add(number)))
+    }
+
     /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        self.0 = self.0.wrapping_add(GOLDEN);
+        mixed(self.0)
     }
 
     /// Returns a whole number below n, or 0 if n is 0.
