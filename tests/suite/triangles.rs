@@ -145,7 +145,7 @@ fn meshes_of_references_keep_every_promise() {
 #[test]
 fn meshes_of_example_scenes_keep_every_promise() {
     let mut parts = 0;
-    let scenes = repository("tests/../examples/scenes");
+    let scenes = repository("examples/scenes");
     let mut files: Vec<_> =
         std::fs::read_dir(scenes).expect("the scenes").map(|file| file.expect("a file").path()).collect();
     files.sort();
