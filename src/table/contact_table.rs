@@ -212,7 +212,26 @@ impl ContactTable {
     /// Gives the quantities with these numbers at many lateral displacements \[mm\] and as many yaws \[rad\], or one yaw for all. `out`
     /// gets the values of the first quantity at all positions, then those of the second, and so on. It runs on the threads of the
     /// current rayon pool; any number of threads gives the bits of [`ContactTable::fill`].
-    pub fn fill_many(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], out: &mut [f64]) {
+    ///
+    /// # Errors
+    /// A number of yaws or of values that does not fit, and a number of no quantity.
+    pub fn fill_many(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], out: &mut [f64]) -> Result<()> {
+        let wrong = |place: &str, found: String, expected: String| {
+            Err(Error::new(place, found, expected, "give as many as there are positions"))
+        };
+        if yaw.len() != 1 && yaw.len() != lateral.len() {
+            let expected = format!("one, or {} as of lateral", lateral.len());
+            return wrong("yaw", format!("{} values", yaw.len()), expected);
+        }
+        if out.len() != numbers.len() * lateral.len() {
+            let [positions, each] = [lateral.len(), numbers.len()];
+            let expected = format!("{}, {positions} of each of {each} quantities", each * positions);
+            return wrong("out", format!("{} values", out.len()), expected);
+        }
+        if let Some(number) = numbers.iter().find(|number| **number >= self.quantities.len()) {
+            let expected = format!("a number below {}", self.quantities.len());
+            return Err(Error::new("numbers", number.to_string(), expected, "take those of `quantities`"));
+        }
         let mut parts: Vec<Vec<&mut [f64]>> = Vec::new();
         parts.resize_with(lateral.len().div_ceil(TOGETHER), Vec::new);
         for column in out.chunks_exact_mut(lateral.len().max(1)) {
@@ -228,6 +247,7 @@ impl ContactTable {
             };
             arch.dispatch(ColumnsPart { table: self, lateral, yaw, numbers, columns: &mut columns });
         });
+        Ok(())
     }
 
     /// Returns the numbers of the cells under a yaw \[rad\], in ascending order.

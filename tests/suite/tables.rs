@@ -172,6 +172,22 @@ fn tables_over_yaw_err_by_no_more_than_they_state() -> Result<()> {
 }
 
 #[test]
+fn arrays_of_other_sizes_are_refused() -> Result<()> {
+    let table = table(&case(DRAWN, "", "")?, Interval::new(0.0, 0.5), None, 1e-3, true)?;
+    let said = |yaw: &[f64], numbers: &[usize], count: usize| {
+        let filled = table.fill_many(&[0.1, 0.2, 0.3], yaw, numbers, &mut vec![0.0; count]);
+        filled.err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    assert_eq!(said(&[0.0], &[0, 1], 6), "");
+    assert!(said(&[0.0; 2], &[0], 3).starts_with("yaw: found 2 values; expected one, or 3 as of lateral"));
+    assert!(
+        said(&[0.0], &[0, 1], 3).starts_with("out: found 3 values; expected 6, 3 of each of 2 quantities")
+    );
+    assert!(said(&[0.0], &[99], 3).starts_with("numbers: found 99; expected a number below"));
+    Ok(())
+}
+
+#[test]
 fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
     let case = case(DRAWN, ", yaw = 0.002", "")?;
     let places = random(RANGE, YAWS);
@@ -184,7 +200,7 @@ fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
                 let numbers: Vec<usize> = (0..made.quantities().len()).rev().collect();
                 let mut all = vec![0.0; numbers.len() * lateral.len()];
                 let yaws = if yaw.is_some() { yaws.as_slice() } else { &made.about().yaw.ends()[..1] };
-                made.fill_many(&lateral, yaws, &numbers, &mut all);
+                made.fill_many(&lateral, yaws, &numbers, &mut all)?;
                 let mut row = vec![0.0; numbers.len()];
                 for (k, y) in lateral.iter().enumerate() {
                     made.fill(*y, yaws[k % yaws.len()], &mut row);

@@ -113,7 +113,7 @@ impl ContactTable {
         quantities: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let lateral = values("lateral", lateral)?;
-        let yaw = self.yaws(yaw, lateral.len())?;
+        let yaw = self.yaws(yaw)?;
         let known = self.table.quantities();
         let wanted = |name: &str| quantities.as_ref().is_none_or(|names| names.iter().any(|own| own == name));
         let is_unknown = |name: &&String| known.iter().all(|own| own.name != **name);
@@ -125,7 +125,7 @@ impl ContactTable {
         let columns = unset(py, numbers.len(), lateral.len())?;
         let mut filled = columns.readwrite();
         let out = filled.as_slice_mut()?;
-        detached(py, || self.table.fill_many(&lateral, &yaw, &numbers, out))?;
+        detached(py, || self.table.fill_many(&lateral, &yaw, &numbers, out))?.map_err(exception)?;
         drop(filled);
         self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
     }
@@ -188,21 +188,12 @@ impl ContactTable {
 }
 
 impl ContactTable {
-    /// Gives the yaws \[rad\] of `count` displacements: one for all, or one for each.
-    fn yaws(&self, yaw: Option<&Bound<'_, PyAny>>, count: usize) -> PyResult<Vec<f64>> {
+    /// Gives yaws \[rad\]: one for all displacements, or one for each.
+    fn yaws(&self, yaw: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
         let about = self.table.about();
         let given = yaw.map(|yaw| yaw.extract().map_or_else(|_| values("yaw", yaw), |one| Ok(vec![one])));
         match given.transpose()? {
-            Some(all) if about.over_yaw() => match all.len() {
-                1 => Ok(all),
-                many if many == count => Ok(all),
-                many => Err(exception(Error::new(
-                    "yaw",
-                    format!("{many} values"),
-                    format!("one, or {count} as of lateral"),
-                    "give as many",
-                ))),
-            },
+            Some(all) if about.over_yaw() => Ok(all),
             Some(all) => {
                 all.iter().try_for_each(|yaw| self.one_yaw(Some(*yaw)).map(drop))?;
                 Ok(vec![about.yaw.low])
