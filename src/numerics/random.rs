@@ -19,7 +19,7 @@ impl Random {
         Self(seed)
     }
 
-    /// Makes the stream with a number under a seed. Streams of other numbers are independent of each other.
+    /// Makes one of the streams of a seed, by its number. They are independent of each other.
     pub fn stream(seed: u64, number: u64) -> Self {
         Self(mixed(Self(seed).bits().wrapping_add(number)))
     }

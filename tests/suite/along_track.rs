@@ -8,6 +8,7 @@ use serde_json::Value;
 use wheelrail::error::Result;
 use wheelrail::internal::Random;
 use wheelrail::lofted::{Joining, Loft, LoftSlice};
+use wheelrail::nalgebra;
 use wheelrail::placement::{Track, Wheelset};
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{
@@ -140,7 +141,7 @@ fn crossing() -> March {
 fn brute(loft: &Loft, wheel: &[[f64; 2]], [offset, ahead]: [f64; 2], at: &Position, along: f64) -> f64 {
     let Roll::Fixed(roll) = at.roll else { panic!("a roll") };
     let rotation = at.rotation(roll).inverse();
-    let up = rotation * wheelrail::nalgebra::Vector3::z();
+    let up = rotation * nalgebra::Vector3::z();
     let height = |x: f64| {
         let k = wheel.partition_point(|p| p[0] <= x);
         let (a, b) = (wheel.get(k.checked_sub(1)?)?, wheel.get(k)?);
@@ -157,7 +158,7 @@ fn brute(loft: &Loft, wheel: &[[f64; 2]], [offset, ahead]: [f64; 2], at: &Positi
             }
             for half in 0..=2 * strip.cells() {
                 let [x, z] = strip.point(0.5 * half as f64, y).at;
-                let q = rotation * wheelrail::nalgebra::Vector3::new(x - offset, y - along - ahead, z);
+                let q = rotation * nalgebra::Vector3::new(x - offset, y - along - ahead, z);
                 let (mut gap, mut reached) = (0.0, true);
                 for _ in 0..12 {
                     let p = q + up * gap;
@@ -197,8 +198,7 @@ fn no_place_of_the_surface_is_lower_than_first_touch() -> Result<()> {
         march.position = position(lateral, yaw, roll);
         let z = march.at(along)?.rows.iter().find(|row| row.side == TrackSide::Right).unwrap().z;
         // The wheel's profile origin: SPACING/2 out along the axle and RADIUS below it.
-        let origin =
-            march.position.rotation(roll) * wheelrail::nalgebra::Vector3::new(SPACING / 2.0, 0.0, -RADIUS);
+        let origin = march.position.rotation(roll) * nalgebra::Vector3::new(SPACING / 2.0, 0.0, -RADIUS);
         let offset = [origin.x + lateral - SPACING / 2.0, origin.y];
         let found = z + RADIUS + origin.z;
         let expected = -brute(&list, &polygon, offset, &march.position, along);

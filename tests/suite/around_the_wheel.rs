@@ -8,6 +8,7 @@ use serde_json::Value;
 use wheelrail::error::Result;
 use wheelrail::internal::Random;
 use wheelrail::lofted::{Flat, Joining, LoftSlice, LoftedWheel};
+use wheelrail::nalgebra;
 use wheelrail::placement::{Track, Wheelset};
 use wheelrail::profile::Section;
 use wheelrail::scene;
@@ -186,7 +187,7 @@ fn brute(
         let (sin, cos) = angle.sin_cos();
         for [x, z] in wheel {
             let rolling = share(angle) * (RADIUS - z);
-            let p = rotation * wheelrail::nalgebra::Vector3::new(*x, rolling * sin, -rolling * cos);
+            let p = rotation * nalgebra::Vector3::new(*x, rolling * sin, -rolling * cos);
             let height = rail.height(p.x + origin[0]);
             let gap = p.z + origin[1] - height;
             least = if gap.is_nan() { least } else { least.min(gap) };
@@ -220,8 +221,7 @@ fn no_place_of_a_wheel_is_lower_than_first_touch() -> Result<()> {
         march.position = position(lateral, yaw, roll);
         let found = of_right(&march.turned(away - turned)?)?;
         // The axle's middle at the height R over the top of rail: the wheel's centre SPACING/2 out along the axle.
-        let centre =
-            march.position.rotation(roll) * wheelrail::nalgebra::Vector3::new(SPACING / 2.0, 0.0, 0.0);
+        let centre = march.position.rotation(roll) * nalgebra::Vector3::new(SPACING / 2.0, 0.0, 0.0);
         let origin = [centre.x + lateral - top.rail_x(), centre.z + RADIUS - top.rail_z()];
         let expected = -brute(&polygon, &below, |angle| share(angle - away), origin, &march.position);
         let place = format!("{:?} at {away}: {} and {expected} {found:?}", march.position, found.z);

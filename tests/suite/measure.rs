@@ -7,6 +7,7 @@ mod spread;
 use wheelrail::error::Result;
 use wheelrail::measure::*;
 use wheelrail::measured::{self, CurveKind};
+use wheelrail::nalgebra;
 use wheelrail::profile::{Arc, Profile, Section, Segment, Side, Station, standards, trace};
 
 /// Accuracy \[mm\] to which known wear has to be recovered.
@@ -327,7 +328,7 @@ fn instruments_have_the_same_values() -> Result<()> {
             measured::Options { curve: Some(CurveKind::Interpolation), ..measured::Options::default() };
         let read = measured::profile(file, &bytes, Side::Wheel, &curve)?.profile;
         let turn = if file.starts_with("right") { RIGHT_TURNED_BY } else { 0.0 };
-        let read = read.rotated(wheelrail::nalgebra::UnitComplex::new(turn));
+        let read = read.rotated(nalgebra::UnitComplex::new(turn));
         let measures = measure(&read, Side::Wheel, None, &MeasureOptions::default())?;
         let found =
             [Quantity::FlangeThickness, Quantity::FlangeHeight, Quantity::Qr].map(|q| value(&measures, q));

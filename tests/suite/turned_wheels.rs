@@ -8,6 +8,7 @@ use wheelrail::error::Result;
 use wheelrail::internal::Random;
 use wheelrail::load::curvatures;
 use wheelrail::lofted::{Flat, LoftedBody, LoftedWheel};
+use wheelrail::nalgebra;
 use wheelrail::patch::Patch;
 use wheelrail::placement::{Creepages, Motion, Placement, Rates};
 use wheelrail::scene;
@@ -139,12 +140,9 @@ fn a_cone_with_a_flat_has_the_height_of_its_surface_in_space() -> Result<()> {
         let frame = placement.lofted_wheel().unwrap();
         let axle = frame.axes().map(|axis| axis[0]);
         let (sin, cos) = placement.rail().contact_angle().sin_cos();
-        let axle = wheelrail::nalgebra::Vector3::new(
-            cos * axle[0] - sin * axle[2],
-            axle[1],
-            sin * axle[0] + cos * axle[2],
-        );
-        let expected = position(lateral, yaw, roll).rotation(roll) * wheelrail::nalgebra::Vector3::x();
+        let axle =
+            nalgebra::Vector3::new(cos * axle[0] - sin * axle[2], axle[1], sin * axle[0] + cos * axle[2]);
+        let expected = position(lateral, yaw, roll).rotation(roll) * nalgebra::Vector3::x();
         assert!((axle - expected).norm() < 1e-9, "scene {scene}: {axle:?} {expected:?}");
         if curvatures(&placement).a_per_mm.is_finite() {
             let normals = evaluator.normals(0.0, 0.0);

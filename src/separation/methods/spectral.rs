@@ -183,8 +183,11 @@ impl Spectral<'_> {
     }
 }
 
-/// Fills columns by the code for one kind of machine, as if the array were in one kind of memory: for the test that all give the same
-/// bits. Returns the largest number of spans of the strips' columns.
+/// Fills columns of s \[mm\] by the code for one kind of machine, and stores them as in an array in one kind of memory. A test
+/// compares their bits. `out` has the values of one column after another, at ξ \[mm\] in ascending order. Returns the largest number of spans
+/// that a column of a strip has.
+///
+/// Accuracy: [`FULL_PRECISION`].
 pub fn columns_by(
     placement: &Placement,
     (arch, residence): (pulp::Arch, Residence),

@@ -11,9 +11,9 @@ import numpy as np
 from solve import traction
 
 # Share of load and approach to which both are met.
-TOLERANCE = 1e-5
-# Tolerance of Tamaas: a hundredth of what the last step missed, so that the steps settle; the first and the last one.
-COARSE, SOLVED = 1e-4, 1e-7
+TOLERANCE = 1e-6
+# Tolerance of Tamaas in the first and in the last step. Between them it is a hundredth of what the step before has missed.
+COARSE, SOLVED = 1e-4, 1e-8
 STEPS = 40
 
 
