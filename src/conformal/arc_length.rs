@@ -91,7 +91,7 @@ impl<'a> RailArcLength<'a> {
                 return false;
             };
             let ([xi_a, xi_b], [zeta_a, zeta_b]) = ([a.xi.high, b.xi.low], [a.heights[1], b.heights[0]]);
-            let slope = section.branches[a.branch].slope_from(&section.end(a, 1).0).abs();
+            let slope = section.end_slope(a, 1).abs();
             // A rounding of ξ moves the point of a steep end along its slope.
             let steep = if slope.is_finite() { 1.0 + slope } else { 1.0 / f64::EPSILON };
             xi_a == xi_b && (zeta_a - zeta_b).abs() <= ONE_JOINT * size * steep

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::patch::in_valleys::monotone::monotone;
 use crate::patch::in_valleys::valleys::Valleys;
-use crate::patch::{Patch, Window, least_on_roller, turning_points};
+use crate::patch::{BySamples, Patch, Window, least_on_roller, turning_points};
 use crate::placement::Placement;
 use crate::separation::{Evaluator, midplane_gap};
 
@@ -13,8 +13,8 @@ use crate::separation::{Evaluator, midplane_gap};
 /// profile and of its drawing's tangents (1e-10 mm on a wheel), far below what any solver resolves.
 const ROUNDING: f64 = 1e-12;
 
-/// Overlap, as a share of the profiles' extent, up to which a contact of a body that varies counts as feasible: the search finds its
-/// places to 1e-9 of a cell, and with them the frame's normal.
+/// Overlap, as a share of the profiles' extent, up to which a contact counts as feasible by samples: the search for bodies that vary
+/// finds its places to 1e-9 of a cell, and with them the frame's normal.
 const ROUNDING_OF_PLACES: f64 = 1e-11;
 
 /// The answer to (4.1).
@@ -45,7 +45,7 @@ pub struct Feasibility {
 /// circle of a kink or end: places in closed form. Along them s is searched between joints for its turning points, up to |η| = 0.65 of
 /// the axle's distance. Exact to rounding, unless s turns twice within a quarter of a stretch between joints: see the docs on numerics.
 ///
-/// Where a body varies, s is searched as the patch is: [`Patch::new`].
+/// Where the patch is found from samples, so is the least s: [`Patch::new`].
 ///
 /// Cost: some ten nanoseconds a joint without skew, some hundred with skew.
 ///
@@ -63,8 +63,8 @@ pub struct Feasibility {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
-    if placement.lofted().is_some() {
-        return with_varying(placement);
+    if BySamples::apply_to(placement, 0.0) {
+        return by_overlap(placement);
     }
     let along_zeta = match (placement.skew() == 0.0, placement.under()) {
         (true, _) => least_in_midplane(placement)?,
@@ -82,8 +82,8 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }
 
-/// Finds the least s where a body varies: at C, or where the bodies overlap most.
-fn with_varying(placement: &Placement) -> Option<Feasibility> {
+/// Finds the least s where the patch is found from samples: at C, or where the bodies overlap most.
+fn by_overlap(placement: &Placement) -> Option<Feasibility> {
     let at_contact = Evaluator::new(placement).separation(0.0, 0.0);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     // Below 0 by rounding, which would otherwise make patches of its own around C.

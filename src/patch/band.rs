@@ -1,12 +1,12 @@
 //! Bands: parts of a component in which each ξ has one interval of η.
 
+use super::by_samples::SMOOTH;
 use super::edges::EdgeFinder;
 use super::grading::Grading;
 use super::in_valleys::slicer::STEP_ROUNDINGS;
 use super::outline::{End, Outline};
 use super::slice::Slice;
 use super::stretch::{Stretch, StretchFit};
-use super::varying::SMOOTH;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
@@ -22,7 +22,7 @@ const ROUNDINGS: f64 = 4.0;
 /// A place at which s may be least.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
-    /// The valley along which s turns, or the lane where a body varies; `None` where slices have no valleys.
+    /// The valley along which s turns, or the lane of samples; `None` where slices have no valleys.
     pub(super) valley: Option<usize>,
     /// ξ \[mm\].
     pub(super) xi: f64,
@@ -40,7 +40,7 @@ pub(crate) struct Band {
     /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip, unless s is level along that end.
     pub(crate) sides: [Interval; 2],
     /// Pairs (ξ, valleys) by ascending ξ: the valleys that lie in the band up to that ξ, the deepest first, from which slices are
-    /// found. Where a body varies it is the band's lane; empty on a roller, and without skew over the tangent plane.
+    /// found. Of samples it is the band's lane; empty where slices are found by roots, and without skew over the tangent plane.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
     /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,
@@ -86,7 +86,7 @@ impl Band {
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
-        let on_rail = outline.slicer.by_roots.is_none() && outline.slicer.varying.is_none();
+        let on_rail = outline.slicer.by_roots.is_none() && outline.slicer.by_samples.is_none();
         let mut finder = on_rail.then(|| EdgeFinder::new(outline.slicer.placement()));
         // ξ, the square of half the width and the middle of the last two slices that were found one by one.
         let mut known = [[f64::NAN; 3]; 2];
@@ -116,7 +116,7 @@ impl Band {
     }
 
     /// Returns the rounding of the square of half the width \[mm²\]: the rounding of s times the square over the depth, both in the
-    /// middle of the band. Where a body varies it is a share of that square.
+    /// middle of the band. Of samples it is a share of that square.
     fn noise(&self, outline: &mut Outline<'_>) -> f64 {
         let rail = &outline.slicer.placement().rail().section;
         // Over the rail's surface the arc length stands for both coordinates.
@@ -129,7 +129,7 @@ impl Band {
             .slicer
             .edges(middle, valley)
             .map_or(0.0, |[low, high]| ((high.eta - low.eta) / 2.0).powi(2));
-        if outline.slicer.varying.is_some() {
+        if outline.slicer.by_samples.is_some() {
             return SMOOTH * square;
         }
         ROUNDINGS * f64::EPSILON * square * (1.0 + nan_max(size.low, size.high) / depth)

@@ -2,6 +2,7 @@
 
 use super::band::{Band, Turn};
 use super::by_roots::turns::LeastGap;
+use super::by_samples;
 use super::corners;
 use super::in_valleys::lanes;
 use super::loops;
@@ -10,7 +11,6 @@ use super::measure::area_and_length;
 use super::outline::{End, Outline};
 use super::plain;
 use super::slice::Slice;
-use super::varying;
 use super::window::Window;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
@@ -95,13 +95,15 @@ pub struct Patch {
 
 impl Patch {
     /// Finds all components inside the window. A line of constant ξ meets a component in one interval of η. Under a skewed wheel on a
-    /// rail, and where a body varies, it may meet it in several, and a component may have holes.
+    /// rail, and where the patch is found from samples, it may meet it in several, and a component may have holes.
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew a part is missed
     /// only between two turns of s along a valley between which the surfaces are parallel to 1e-13 (see the docs on numerics); on a roller,
     /// only where it is shallower than 1e-12 mm, beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a
-    /// hollow kink of a skewed wheel, where a line of constant ξ has two lowest places.
-    /// Where a body varies a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
+    /// hollow kink of a skewed wheel, where it is shallower than 1e-4 mm.
+    ///
+    /// The patch is found from samples where a body varies, and where a hollow kink gives the lines on a roller two lowest places that may
+    /// differ by more than that. Then a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
     /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
     /// the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
@@ -179,8 +181,8 @@ struct BandGroup {
 /// Collects the bands of the patch into components, by ascending ξ.
 fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
     let placement = outline.slicer.placement();
-    let (mut bands, turns) = if let Some(varying) = &mut outline.slicer.varying {
-        varying::bands(varying, placement, &outline.window)
+    let (mut bands, turns) = if let Some(by_samples) = &mut outline.slicer.by_samples {
+        by_samples::bands(by_samples, placement, &outline.window)
     } else if outline.slicer.in_valleys.is_some() {
         lanes::bands(outline)
     } else {
@@ -229,7 +231,7 @@ impl BandGroup {
 
     fn component(mut self, outline: &mut Outline<'_>) -> Component {
         // Without valleys the slices do not say more about the least s.
-        let known = (outline.slicer.in_valleys.is_none() && outline.slicer.varying.is_none())
+        let known = (outline.slicer.in_valleys.is_none() && outline.slicer.by_samples.is_none())
             .then(|| self.deepest(outline, &[]));
         let rows = self.rows(outline, known.map(|known| known[0]));
         let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
@@ -270,25 +272,25 @@ impl BandGroup {
     /// `None` if it is not known yet.
     fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
         let whole = self.xi().width();
-        let varying = outline.slicer.varying.is_some();
-        let plain = outline.slicer.placement().skew() == 0.0 && !varying;
+        let by_samples = outline.slicer.by_samples.is_some();
+        let plain = outline.slicer.placement().skew() == 0.0 && !by_samples;
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
-            let over_surface = outline.slicer.is_over_rail() && !varying;
+            let over_surface = outline.slicer.is_over_rail() && !by_samples;
             if over_surface || outline.slicer.by_roots.is_some() {
                 corners::over_joints(&mut outline.slicer, band, &mut more);
             } else if let Some(least) = least {
                 corners::plain(outline, band, least, &mut more);
-            } else if !varying {
+            } else if !by_samples {
                 let eta = reach(outline, band);
                 corners::on_circles(outline, band, eta, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
             band.fit(outline);
-            if varying {
+            if by_samples {
                 // Its interpolants are smooth between their own ends only.
                 band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi.high));
                 sort(&mut band.corners);

@@ -2,6 +2,7 @@
 
 mod band;
 mod by_roots;
+mod by_samples;
 mod components;
 mod corners;
 mod edges;
@@ -16,10 +17,10 @@ mod raised;
 mod slice;
 mod stretch;
 pub(crate) mod turning_points;
-mod varying;
 mod window;
 
 pub(crate) use band::{Band, BandPlaces};
+pub(crate) use by_samples::BySamples;
 pub use components::{Component, Patch};
 pub(crate) use loops::{BandSide, rings};
 pub use outline::{End, Outline};

@@ -5,10 +5,10 @@
 
 use super::by_roots::ByRoots;
 use super::by_roots::turns::LeastGap;
+use super::by_samples::BySamples;
 use super::in_valleys::slicer::{Edge, InValleys, STEP_ROUNDINGS, between, on_surface};
 use super::level::Level;
 use super::raised::RaisedLanes;
-use super::varying::Varying;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY};
@@ -57,8 +57,8 @@ pub struct Slicer<'a> {
     pub(super) in_valleys: Option<InValleys<'a>>,
     /// The normal gap of these slices over the rail's surface; otherwise `None`.
     normal: Option<Level<'a>>,
-    /// The slices where a body varies; `None` where both are swept.
-    pub(super) varying: Option<Varying<'a>>,
+    /// The slices that are found from samples; otherwise `None`.
+    pub(super) by_samples: Option<BySamples<'a>>,
     approach: f64,
 }
 
@@ -71,8 +71,8 @@ impl<'a> Slicer<'a> {
     /// Makes a slicer of the patch over the tangent plane or over the rail's surface, where ξ is σ, and s is t(σ, η) + δ (1 − cos α).
     pub(super) fn over(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
         let level = || Level::new(placement, approach, reference);
-        let (varies, on_roller) = (placement.lofted().is_some(), placement.under().is_some());
-        let on_rail = !varies && !on_roller;
+        let (sampled, on_roller) = (BySamples::apply_to(placement, approach), placement.under().is_some());
+        let on_rail = !sampled && !on_roller;
         let normal = (on_rail && reference == Reference::Rail).then(level);
         let surface = normal.as_ref().and_then(Level::normal_gap).map(|gap| gap.rail().clone());
         let in_valleys = on_rail && (surface.is_some() || placement.skew() != 0.0);
@@ -81,9 +81,9 @@ impl<'a> Slicer<'a> {
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            by_roots: (on_roller && !varies).then(|| ByRoots::new(placement, approach, level())).flatten(),
+            by_roots: (on_roller && !sampled).then(|| ByRoots::new(placement, approach, level())).flatten(),
             in_valleys: in_valleys.then(|| InValleys::new(placement, approach, surface)),
-            varying: varies.then(|| Varying::new(placement, approach, level())),
+            by_samples: sampled.then(|| BySamples::new(placement, approach, level())),
             normal,
             approach,
         }
@@ -92,12 +92,16 @@ impl<'a> Slicer<'a> {
     /// Returns the gap whose level bounds the patch; `None` where it is s over the tangent plane of swept bodies on a rail.
     fn level(&self) -> Option<&Level<'a>> {
         let of_roots = || self.by_roots.as_ref().map(|by_roots| &by_roots.level);
-        self.varying.as_ref().map(|varying| &varying.level).or_else(of_roots).or(self.normal.as_ref())
+        self.by_samples
+            .as_ref()
+            .map(|by_samples| &by_samples.level)
+            .or_else(of_roots)
+            .or(self.normal.as_ref())
     }
 
     fn level_mut(&mut self) -> Option<&mut Level<'a>> {
         let of_roots = self.by_roots.as_mut().map(|by_roots| &mut by_roots.level);
-        self.varying.as_mut().map(|varying| &mut varying.level).or(of_roots).or(self.normal.as_mut())
+        self.by_samples.as_mut().map(|by_samples| &mut by_samples.level).or(of_roots).or(self.normal.as_mut())
     }
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
@@ -141,11 +145,11 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
-    /// bodies. Outside the patch of a body that varies it is s − δ at η = 0.
+    /// bodies. Outside a patch from samples it is s − δ at η = 0.
     pub fn depth(&mut self, xi: f64) -> f64 {
-        if let Some(varying) = &mut self.varying {
-            let eta = varying.lowest(xi, None);
-            return varying.separation(xi, eta) - self.approach;
+        if let Some(by_samples) = &mut self.by_samples {
+            let eta = by_samples.lowest(xi, None);
+            return by_samples.separation(xi, eta) - self.approach;
         }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.depth(xi);
@@ -197,8 +201,8 @@ impl<'a> Slicer<'a> {
 
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`.
     pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[Edge; 2]> {
-        if let Some(varying) = &mut self.varying {
-            return varying.edges(xi, valley);
+        if let Some(by_samples) = &mut self.by_samples {
+            return by_samples.edges(xi, valley);
         }
         if let (Some(in_valleys), Some(valley)) = (&mut self.in_valleys, valley) {
             return in_valleys.edges(xi, valley);
@@ -211,7 +215,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns both ends of the slice at ξ \[mm\] next to a guess; with skew, of the slice that holds `valley`. Returns `None` without
-    /// skew over the tangent plane of a rail, where a body varies, and if they are not surely those of the slice that was guessed.
+    /// skew over the tangent plane of a rail, from samples, and if they are not surely those of the slice that was guessed.
     pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
         match &mut self.by_roots {
             Some(by_roots) => by_roots.edges_near(xi, guess),
@@ -293,10 +297,10 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns η \[mm\] of the least s at ξ. It is 0 for swept bodies without skew, else the place where s neither rises nor falls
-    /// along η, or where a surface ends; NaN where a body has no surface. Outside the patch of a body that varies it is 0.
+    /// along η, or where a surface ends; NaN where a body has no surface. Outside a patch from samples it is 0.
     pub fn lowest(&mut self, xi: f64) -> f64 {
-        if let Some(varying) = &mut self.varying {
-            return varying.lowest(xi, None);
+        if let Some(by_samples) = &mut self.by_samples {
+            return by_samples.lowest(xi, None);
         }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.lowest(xi);
@@ -307,8 +311,8 @@ impl<'a> Slicer<'a> {
 
     /// Returns η of a valley at ξ \[mm\]; 0 without skew.
     pub(super) fn valley(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        if let Some(varying) = &mut self.varying {
-            return varying.lowest(xi, valley);
+        if let Some(by_samples) = &mut self.by_samples {
+            return by_samples.lowest(xi, valley);
         }
         if let Some(by_roots) = &mut self.by_roots {
             return by_roots.lowest(xi);

@@ -101,9 +101,12 @@ fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
     let mesh = StripMesh::new(placement, &patch, StripCounts::default()).expect("a mesh");
     let meshed: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
     assert!((meshed / patch.area() - 1.0).abs() < 1e-6, "{name}: mesh of {meshed} over {}", patch.area());
-    // Over the rail's surface: how far the wheel is above the rail's point, raised by δ cos α along its normal.
+    // Over the rail's surface: how far the wheel is above the rail's point, raised by δ cos α along its normal; over a roller t − δ cos α.
     let (over_rail, normal) = (Patch::over_rail(placement, delta, &NEAR), NormalGap::new(placement));
     by_lines(&format!("{name}, over the rail"), &over_rail, |sigma, eta| {
+        if placement.under().is_some() {
+            return normal.gap(sigma, eta) - delta * normal.angle(sigma).cos();
+        }
         let Some(at) = normal.rail().point(sigma) else { return f64::NAN };
         let (xi, zeta) = (at.xi - delta * at.cos * at.sin, at.zeta + delta * at.cos * at.cos);
         evaluator.separation(xi, eta) + evaluator.rail_height(xi) - zeta
@@ -178,10 +181,12 @@ fn a_hollow_kink_divides_the_lines() {
     let sides = [Arc::line([-30.0, -1.5], [1.0, 0.05]), Arc::line([1.0, 0.05], [30.0, -8.65])];
     let sides = sides.map(|side| wheelrail::profile::Segment::arc(side.expect("a line")));
     let wheel = Profile::new("roof", "test", sides.to_vec()).expect("a wheel");
-    for yaw in [-0.1, 0.02, 0.1, 0.2] {
-        let pair = Pair::new(rail.clone(), wheel.clone(), 460.0).expect("a pair");
-        let placement = pair.placed(4.0, 0.0, yaw).expect("a placement");
-        check(&format!("roof, yaw {yaw}"), &placement, 0.02);
+    let pair = Pair::new(rail, wheel, 460.0).expect("a pair");
+    for pair in [pair.on_roller(350.0).expect("a roller"), pair] {
+        for yaw in [-0.1, 0.02, 0.1, 0.2] {
+            let placement = pair.placed(4.0, 0.0, yaw).expect("a placement");
+            check(&format!("roof, yaw {yaw}, roller {:?}", pair.roller_radius()), &placement, 0.02);
+        }
     }
 }
 

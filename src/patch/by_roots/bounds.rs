@@ -105,10 +105,7 @@ impl<'a> GapBounds<'a> {
     /// Returns the σ \[mm\] at which the roller's crown has kinks, if t over it is the gap.
     pub(super) fn kinks(&self) -> Vec<f64> {
         let Some((crown, section)) = &self.crown else { return Vec::new() };
-        let angle = |piece: usize, end: usize| {
-            let piece = &section.pieces[piece];
-            section.branches[piece.branch].slope_from(&section.end(piece, end).0).atan()
-        };
+        let angle = |piece: usize, end: usize| section.end_slope(&section.pieces[piece], end).atan();
         let pieces: Vec<_> = crown.pieces().collect();
         let joints = pieces.windows(2).map(|pair| (pair[1].0.low, [pair[0].1, pair[1].1]));
         // C parts its own piece.

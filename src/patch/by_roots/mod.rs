@@ -2,8 +2,9 @@
 //! surface.
 //!
 //! Along a line of constant ξ or σ both bodies bend away from each other, so that the gap falls to one lowest place and rises on
-//! either side of it. Without skew that place is η = 0. A skewed wheel would have a second one only where a hollow of its profile has
-//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles.
+//! either side of it. Without skew that place is η = 0. A skewed wheel has a second one only where a hollow of its profile has
+//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles: at a hollow kink. [`divides_lines`] tells
+//! where that counts.
 
 mod bounds;
 mod tilts;
@@ -26,6 +27,35 @@ const SECANTS: usize = 10;
 
 /// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
 const SLOPE_ROUNDINGS: f64 = 8.0;
+
+/// Height \[mm\] of one lowest place of a line over another that may be missed: samples, which would find both, miss parts as deep.
+const LOW_RIDGE: f64 = 1e-4;
+
+/// Returns the coefficient \[1/mm\] of η² in the gap at C, without skew.
+fn opening(placement: &Placement) -> f64 {
+    let around = |body: &Body| body.section.frame.cos / body.axle_distance();
+    0.5 * (around(placement.wheel()) + around(placement.rail()))
+}
+
+/// Returns whether a line of constant ξ may have two lowest places near or within the patch, as it crosses a hollow kink of a skewed
+/// wheel on a roller.
+///
+/// At the kink the slope of the gap along the line falls by sin χ times the change of the profile's slope, J. With a the opening the
+/// two places are up to J/2a apart, and one of them up to J²/4a lower than the other.
+pub(in crate::patch) fn divides_lines(placement: &Placement, approach: f64) -> bool {
+    if placement.under().is_none() || placement.skew() == 0.0 {
+        return false;
+    }
+    let (wheel, roller) = (&placement.wheel().section, &placement.rail().section);
+    let lower = |slope: f64| (slope * placement.skew().sin()).powi(2) / (4.0 * opening(placement));
+    wheel.pieces.windows(2).any(|pair| {
+        let (xi, slopes) = (pair[1].xi.low, [wheel.end_slope(&pair[0], 1), wheel.end_slope(&pair[1], 0)]);
+        let Some(below) = roller.branch_at(xi).filter(|_| pair[0].xi.high == xi) else { return false };
+        let steepest = slopes.map(|slope| (slope - below.chord_slope(xi, xi)).abs());
+        let least = pair[1].heights[0] - below.height(xi) - lower(steepest[0].max(steepest[1]));
+        lower((slopes[0] - slopes[1]).max(0.0)) > LOW_RIDGE && least < approach
+    })
+}
 
 /// Returns the sections along which a line of constant ξ or σ moves as η grows: the wheel's, and that of a roller.
 pub(super) fn sections(placement: &Placement) -> [Option<&Section>; 2] {
@@ -52,8 +82,7 @@ pub(super) struct ByRoots<'a> {
 impl<'a> ByRoots<'a> {
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\]; `None` on a rail.
     pub(super) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Option<Self> {
-        let around = |body: &Body| body.section.frame.cos / body.axle_distance();
-        let opening = 0.5 * (around(placement.wheel()) + around(placement.rail()));
+        let opening = opening(placement);
         let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
         let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
         let crown = level.normal_gap().map(|gap| gap.rail().clone());

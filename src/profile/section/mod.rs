@@ -158,6 +158,11 @@ impl Section {
         piece.ends.get_or_init(|| Box::new(piece.xi.ends().map(point)))[end]
     }
 
+    /// Returns ζ′ at an end of a piece; infinite where the piece is vertical.
+    pub(crate) fn end_slope(&self, piece: &Piece, end: usize) -> f64 {
+        self.branches[piece.branch].slope_from(&self.end(piece, end).0)
+    }
+
     /// Returns the intervals of ξ \[mm\] over which the envelope has a hole or changes its height at once; ascending, without its
     /// own ends.
     pub(crate) fn steps(&self) -> Vec<Interval> {

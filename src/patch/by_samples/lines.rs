@@ -1,4 +1,4 @@
-//! Lines of constant ξ where a body varies, and the intervals of the patch on them. Over the rail's surface ξ is σ, and s is
+//! Samples along lines of constant ξ, and the intervals of the patch on them. Over the rail's surface ξ is σ, and s is
 //! t + δ (1 − cos α).
 //!
 //! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
@@ -9,6 +9,7 @@
 
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
+use crate::patch::by_roots::divides_lines;
 use crate::patch::in_valleys::slicer::Edge;
 use crate::patch::level::Level;
 use crate::patch::window::Window;
@@ -79,9 +80,9 @@ pub(super) struct SlicedLine {
     pub slices: Vec<LineSlice>,
 }
 
-/// The slices of a placed pair with a body that varies at one approach.
+/// The slices of a placed pair at one approach, from samples.
 #[derive(Debug)]
-pub(in crate::patch) struct Varying<'a> {
+pub(crate) struct BySamples<'a> {
     pub(in crate::patch) level: Level<'a>,
     pub(super) approach: f64,
     /// Step along lines of constant ξ \[mm\].
@@ -92,7 +93,12 @@ pub(in crate::patch) struct Varying<'a> {
     pub(super) lanes: Vec<Vec<(f64, LineSlice)>>,
 }
 
-impl<'a> Varying<'a> {
+impl<'a> BySamples<'a> {
+    /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples.
+    pub(crate) fn apply_to(placement: &Placement, approach: f64) -> bool {
+        placement.lofted().is_some() || divides_lines(placement, approach)
+    }
+
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].
     pub(in crate::patch) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Self {
         // Steps and reach are the least for δ < 0, and for δ = NaN, where nothing is found.
@@ -102,13 +108,16 @@ impl<'a> Varying<'a> {
         Self { level, approach, step, farthest, lanes: Vec::new() }
     }
 
-    /// Finds the lines over a window, from one end to the other of the range of ξ over which the body that varies has a surface, or of σ
-    /// over which the rail has one; none if the window holds nothing of that range.
+    /// Finds the lines over a window, from one end to the other of the range of ξ over which the rail or the body that varies has a
+    /// surface, or of σ over which the rail has one; none if the window holds nothing of that range.
     pub(super) fn lines(&mut self, placement: &Placement, window: &Window) -> Vec<SlicedLine> {
         let eta = window.eta.cut(self.within());
         let reach = match self.level.normal_gap() {
             Some(gap) => gap.rail().reach(),
-            None => placement.lofted().and_then(|body| body.reach(eta)),
+            None => match placement.lofted() {
+                Some(body) => body.reach(eta),
+                None => placement.rail().section.reach(),
+            },
         };
         let over = reach.map(|reach| window.xi.cut(reach));
         let Some(xi) = over.filter(|xi| xi.has_width() && eta.has_width()) else { return Vec::new() };

@@ -1,6 +1,6 @@
-//! Joins the intervals of lines where a body varies to bands.
+//! Joins the intervals of sampled lines to bands.
 
-use super::lines::{LineSlice, SlicedLine, TO_LOWEST, Varying, links};
+use super::lines::{BySamples, LineSlice, SlicedLine, TO_LOWEST, links};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};
@@ -21,14 +21,14 @@ const BLUNT: f64 = 0.1;
 
 /// Returns the bands in a window, and places at which s may be least.
 pub(in crate::patch) fn bands(
-    varying: &mut Varying<'_>,
+    by_samples: &mut BySamples<'_>,
     placement: &Placement,
     window: &Window,
 ) -> (Vec<Band>, Vec<Turn>) {
-    let lines = varying.lines(placement, window);
-    let (mut bands, mut turns) = joined(varying, &lines, window);
+    let lines = by_samples.lines(placement, window);
+    let (mut bands, mut turns) = joined(by_samples, &lines, window);
     for (lane, xi) in &mut turns {
-        *xi = turn(varying, *lane, *xi);
+        *xi = turn(by_samples, *lane, *xi);
         bands[*lane].valleys = vec![(bands[*lane].xi.high, vec![*lane])];
     }
     let turns = turns.into_iter().map(|(lane, xi)| Turn { valley: Some(lane), xi, depth: f64::NAN });
@@ -37,7 +37,7 @@ pub(in crate::patch) fn bands(
 
 /// Joins the intervals of successive lines to bands.
 fn joined(
-    varying: &mut Varying<'_>,
+    by_samples: &mut BySamples<'_>,
     lines: &[SlicedLine],
     window: &Window,
 ) -> (Vec<Band>, Vec<(usize, f64)>) {
@@ -56,8 +56,8 @@ fn joined(
             let band = from.map_or_else(
                 || {
                     let joins = links.iter().any(|link| link[1] == j);
-                    let end =
-                        (!joins).then(|| bound(found, line.xi, [window.xi.low, ends[0]], varying.approach));
+                    let end = (!joins)
+                        .then(|| bound(found, line.xi, [window.xi.low, ends[0]], by_samples.approach));
                     let side = side(found, end);
                     bands.push(Band::new(Interval::of(line.xi), [end, None], [side; 2], window.eta));
                     lanes.push(Vec::new());
@@ -74,7 +74,7 @@ fn joined(
             }
             let found = &before.slices[i];
             let joins = links.iter().any(|link| link[0] == i);
-            let end = (!joins).then(|| bound(found, before.xi, [f64::NAN; 2], varying.approach));
+            let end = (!joins).then(|| bound(found, before.xi, [f64::NAN; 2], by_samples.approach));
             // Bands that join or divide meet at one ξ.
             close(&mut bands[band], if joins { line.xi } else { before.xi }, end, side(found, end));
         }
@@ -82,7 +82,7 @@ fn joined(
     }
     if let Some(last) = lines.last() {
         for (found, &band) in last.slices.iter().zip(&current) {
-            let end = Some(bound(found, last.xi, [window.xi.high, ends[1]], varying.approach));
+            let end = Some(bound(found, last.xi, [window.xi.high, ends[1]], by_samples.approach));
             close(&mut bands[band], last.xi, end, side(found, end));
         }
     }
@@ -91,13 +91,13 @@ fn joined(
         rows.iter().min_by(least).map_or(f64::NAN, |row| row.0)
     };
     let turns = lanes.iter().map(deepest).enumerate().collect();
-    varying.lanes = lanes;
+    by_samples.lanes = lanes;
     (bands, turns)
 }
 
 /// Finds where s turns along a lane, near the deepest of its lines.
-fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
-    let rows = &varying.lanes[lane];
+fn turn(by_samples: &mut BySamples<'_>, lane: usize, xi: f64) -> f64 {
+    let rows = &by_samples.lanes[lane];
     let at = rows.partition_point(|row| row.0 < xi);
     let (Some(from), Some(to)) = (at.checked_sub(1).map(|k| rows[k].0), rows.get(at + 1).map(|row| row.0))
     else {
@@ -105,13 +105,13 @@ fn turn(varying: &mut Varying<'_>, lane: usize, xi: f64) -> f64 {
     };
     let depth = rows[at].1.lowest[1];
     let slope = |xi: f64| {
-        let eta = varying.lowest(xi, Some(lane));
-        varying.level.gradient(xi, eta)[0]
+        let eta = by_samples.lowest(xi, Some(lane));
+        by_samples.level.gradient(xi, eta)[0]
     };
     let turn = change(slope, [from, to], TO_LOWEST);
     // A crease, where s does not turn, may be deeper.
-    let eta = varying.lowest(turn, Some(lane));
-    if varying.separation(turn, eta) < depth { turn } else { xi }
+    let eta = by_samples.lowest(turn, Some(lane));
+    if by_samples.separation(turn, eta) < depth { turn } else { xi }
 }
 
 fn close(band: &mut Band, xi: f64, end: Option<End>, side: Interval) {
