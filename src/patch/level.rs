@@ -1,6 +1,7 @@
 //! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
 
 use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
+use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::separation::{Evaluator, GapSlopes};
 
@@ -78,6 +79,19 @@ impl<'a> Level<'a> {
     pub(super) fn slope(&mut self, xi: f64, eta: f64) -> f64 {
         self.gradient(xi, eta)[1]
     }
+}
+
+/// Returns the ξ inside an interval \[mm\] at which the rail has joints, or over its surface the σ.
+pub(super) fn joints(placement: &Placement, over_rail: Option<&NormalGap<'_>>, over: Interval) -> Vec<f64> {
+    if placement.lofted_rail().is_some() {
+        // Its cells' sides are no lines of constant ξ.
+        return Vec::new();
+    }
+    let joints = match over_rail {
+        Some(gap) => gap.rail().joints(),
+        None => placement.rail().section.joints(over).map(|(xi, _)| xi).collect(),
+    };
+    joints.into_iter().filter(|xi| over.surrounds(*xi)).collect()
 }
 
 /// Returns 1 − cos α, without a difference of nearly equal numbers.

@@ -7,7 +7,7 @@ use super::by_roots::ByRoots;
 use super::by_roots::turns::LeastGap;
 use super::by_samples::BySamples;
 use super::in_valleys::slicer::{Edge, InValleys, STEP_ROUNDINGS, between, on_surface};
-use super::level::Level;
+use super::level::{Level, joints};
 use super::raised::RaisedLanes;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
@@ -123,15 +123,7 @@ impl<'a> Slicer<'a> {
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
     pub(super) fn joints(&self, over: Interval) -> Vec<f64> {
-        if self.placement.lofted_rail().is_some() {
-            // Its cells' sides are no lines of constant ξ.
-            return Vec::new();
-        }
-        let joints = match self.level().and_then(Level::normal_gap) {
-            Some(gap) => gap.rail().joints(),
-            None => self.placement.rail().section.joints(over).map(|(xi, _)| xi).collect(),
-        };
-        joints.into_iter().filter(|xi| over.surrounds(*xi)).collect()
+        joints(self.placement, self.level().and_then(Level::normal_gap), over)
     }
 
     /// Returns whether ξ is the arc length of the rail's surface.

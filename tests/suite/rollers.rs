@@ -9,6 +9,7 @@ use wheelrail::load::{
     Elastic, HalfSpace, curvatures, curvatures_at, effective_modulus, press_alone, weighted_frame,
 };
 use wheelrail::patch::Slicer;
+use wheelrail::profile::standards;
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{Contact, ONE_CONTACT, Position, Roll, Selection};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
@@ -292,6 +293,30 @@ fn a_thin_part_on_a_roller_is_found_wherever_it_lies() {
                 let deepest = ridge.deepest;
                 assert!((deepest[0] - least).abs() < 2e-3, "{at}, {skew}: {deepest:?}");
             }
+        }
+    }
+}
+
+/// Two contacts of one tread, with a kink between them that stands 0.2 µm above what the wheel sinks in: they are some 10 µm apart. The
+/// sides of these rails stand upright.
+#[test]
+fn parts_on_a_roller_are_parted_however_near_they_are() {
+    for (name, at) in
+        ["60E1", "54E1", "49E1"].into_iter().flat_map(|name| [4.0, 6.0, 8.0].map(|at| (name, at)))
+    {
+        let slope = at / f64::sqrt(300.0 * 300.0 - at * at);
+        let roof = [[-30.0, -30.0 * slope], [0.0, 0.0], [30.0, -30.0 * slope]];
+        let sides = roof.windows(2).map(|ends| Segment::arc(Arc::line(ends[0], ends[1]).unwrap()));
+        let pair = Pair::new(
+            standards::rail(name).unwrap(),
+            Profile::new("roof", "", sides.collect()).unwrap(),
+            460.0,
+        );
+        for (roller, skew) in [(200.0, -0.003), (350.0, 0.003), (800.0, 0.01)] {
+            let placement = pair.as_ref().unwrap().on_roller(roller).unwrap().placed(-at, -at, skew).unwrap();
+            let at_kink = Evaluator::new(&placement).separation(at * slope.hypot(1.0), 0.0);
+            let parts = |approach: f64| Patch::new(&placement, approach, &Window::UNBOUNDED).components.len();
+            assert_eq!([at_kink - 2e-4, at_kink + 1e-5].map(parts), [2, 1], "{name}, {at}, {roller}, {skew}");
         }
     }
 }

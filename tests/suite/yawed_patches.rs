@@ -160,6 +160,22 @@ fn the_end_of_a_wheel_beside_the_midplane() {
     }
 }
 
+/// The wheel ends at or beside its contact, so that some lines meet it ahead of C or behind alone.
+#[test]
+fn the_end_of_a_wheel_on_a_roller() {
+    let rail = Arc::about([0.0, -80.0], 80.0, Half::Upper, [-30.0, 30.0]).and_then(profile).expect("a crown");
+    let tread = |from: f64| Arc::about([0.0, 300.0], 300.0, Half::Lower, [from, 30.0]).and_then(profile);
+    for from in [0.0, -1.5] {
+        let pair = Pair::new(rail.clone(), tread(from).expect("a tread"), 460.0).expect("a pair");
+        let pair = pair.on_roller(350.0).expect("a roller");
+        for yaw in [-0.1, -0.01, 0.003, 0.05] {
+            let placement = pair.placed(0.0, 0.0, yaw).expect("a placement");
+            let patch = check(&format!("from {from}, yaw {yaw}"), &placement, 0.1);
+            assert_eq!(patch.components.len(), 1, "from {from}, yaw {yaw}");
+        }
+    }
+}
+
 /// Lines of constant ξ that touch the circle of the wheel's end divide: two prongs, of one component with one loop.
 #[test]
 fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {

@@ -12,6 +12,7 @@ pub(super) mod turns;
 
 use bounds::GapBounds;
 
+use super::in_valleys::circle::{FARTHEST_SINE, Turned};
 use super::in_valleys::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
 use super::level::Level;
 use crate::numerics::interval::Interval;
@@ -24,6 +25,10 @@ const WIDER: f64 = 1.25;
 
 /// Most secant steps to the lowest place of a line. The gap is nearly a parabola along it.
 const SECANTS: usize = 10;
+
+/// Distance \[mm\] from an end of a surface at which its slope counts; also that from η = 0 at which a surface is looked for first where
+/// there is none at η = 0.
+const BESIDE_END: f64 = 1e-6;
 
 /// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
 const SLOPE_ROUNDINGS: f64 = 8.0;
@@ -51,8 +56,9 @@ pub(in crate::patch) fn divides_lines(placement: &Placement, approach: f64) -> b
     wheel.pieces.windows(2).any(|pair| {
         let (xi, slopes) = (pair[1].xi.low, [wheel.end_slope(&pair[0], 1), wheel.end_slope(&pair[1], 0)]);
         let Some(below) = roller.branch_at(xi).filter(|_| pair[0].xi.high == xi) else { return false };
-        let steepest = slopes.map(|slope| (slope - below.chord_slope(xi, xi)).abs());
-        let least = pair[1].heights[0] - below.height(xi) - lower(steepest[0].max(steepest[1]));
+        // Along the line and along the circle of the kink the gap falls by no more.
+        let steepest = slopes[0].abs().max(slopes[1].abs()) + below.chord_slope(xi, xi).abs();
+        let least = pair[1].heights[0] - below.height(xi) - lower(steepest);
         lower((slopes[0] - slopes[1]).max(0.0)) > LOW_RIDGE && least < approach
     })
 }
@@ -73,6 +79,10 @@ pub(super) struct ByRoots<'a> {
     approach: f64,
     /// Coefficient \[1/mm\] of η² at C, without skew.
     opening: f64,
+    /// Distance \[mm\] from η = 0 up to which a surface is looked for.
+    farthest: f64,
+    /// η \[mm\] at which the circles of the wheel's ends are parallel to η, or nearly.
+    turning: [f64; 2],
     /// Least step of a surface \[mm\].
     step: f64,
     /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
@@ -87,7 +97,9 @@ impl<'a> ByRoots<'a> {
         let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
         let crown = level.normal_gap().map(|gap| gap.rail().clone());
         let bounds = GapBounds::new(placement, crown, (approach, opening))?;
-        Some(Self { level, bounds, skewed: placement.skew() != 0.0, approach, opening, step, steps })
+        let (skewed, farthest) = (placement.skew() != 0.0, FARTHEST_SINE * placement.rolling_radius());
+        let turning = Turned::new(placement).turning_of_ends();
+        Some(Self { level, bounds, skewed, approach, opening, farthest, turning, step, steps })
     }
 
     /// Whether the least gap inside a window of η is that of the midplane of two profiles, whose turns have formulas.
@@ -95,52 +107,78 @@ impl<'a> ByRoots<'a> {
         !self.skewed && window.contains(0.0) && self.level.normal_gap().is_none()
     }
 
-    /// Returns η \[mm\] of the least gap at ξ: 0 without skew; with skew NaN where a body has no surface at η = 0.
+    /// Returns η \[mm\] of the least gap at ξ: 0 without skew, with skew the end of a surface if the gap falls up to there; NaN where a body
+    /// is missing.
     pub(super) fn lowest(&mut self, xi: f64) -> f64 {
         if !self.skewed {
             return 0.0;
         }
-        let at_middle = self.level.slope(xi, 0.0);
-        if at_middle == 0.0 || at_middle.is_nan() {
-            return 0.0 * at_middle;
+        let (mut begin, mut slope) = (0.0, self.level.slope(xi, 0.0));
+        if slope.is_nan() {
+            let end = self.beginning(xi);
+            // At an end a surface may stand upright; beside it slopes have a sign.
+            begin = end + BESIDE_END.copysign(end);
+            slope = self.level.slope(xi, begin);
+            // From there the surface goes on outwards.
+            if end * slope > 0.0 || slope.is_nan() {
+                return end;
+            }
         }
-        let first = -at_middle / self.opening;
-        if let Some(lowest) = self.lowest_by_secants(xi, at_middle, 0.5 * first) {
+        if slope == 0.0 {
+            return begin;
+        }
+        let first = -slope / self.opening;
+        if let Some(lowest) = self.lowest_by_secants(xi, (begin, slope), 0.5 * first) {
             return lowest;
         }
         let (mut near, mut far) = (0.0, first);
-        while self.level.slope(xi, far) * at_middle > 0.0 {
+        while self.level.slope(xi, begin + far) * slope > 0.0 {
             (near, far) = (far, WIDER * far);
         }
-        if self.level.slope(xi, far).is_nan() {
-            far = last_where(|eta| !self.level.slope(xi, eta).is_nan(), near, far);
+        let mut end = far;
+        if self.level.slope(xi, begin + far).is_nan() {
+            end = last_where(|off| !self.level.slope(xi, begin + off).is_nan(), near, far);
+            far = end - BESIDE_END.min(end.abs()).copysign(end);
         }
         // Without a root the gap falls up to the end of the surface.
-        bracketed(|eta| self.level.slope(xi, eta), near, far).unwrap_or(far)
+        begin + bracketed(|off| self.level.slope(xi, begin + off), near, far).unwrap_or(end)
     }
 
-    /// Returns η \[mm\] of the least gap at ξ from its slope at η = 0 and a guess; `None` where the steps do not settle.
-    fn lowest_by_secants(&mut self, xi: f64, at_middle: f64, guess: f64) -> Option<f64> {
-        let (mut last, mut before, mut eta) = (0.0, at_middle, guess);
+    /// Returns the η \[mm\] nearest to 0 at which both bodies have a surface on the line of ξ, which has none at η = 0; NaN if there is none.
+    ///
+    /// Method: beyond an end of a wheel's profile the line meets its surface on one side of an η, or between two, which lie on either side of
+    /// where the circle of the end is parallel to η.
+    fn beginning(&mut self, xi: f64) -> f64 {
+        let mut has_surface = |eta: f64| !self.level.slope(xi, eta).is_nan();
+        let doubled = std::iter::successors(Some(BESIDE_END), |far| Some(2.0 * far));
+        let either_side = doubled.take_while(|far| *far < self.farthest).flat_map(|far| [far, -far]);
+        let met = either_side.chain(self.turning).find(|eta| has_surface(*eta));
+        met.map_or(f64::NAN, |eta| last_where(has_surface, eta, 0.0))
+    }
+
+    /// Returns η \[mm\] of the least gap at ξ from a place, the slope there, and a guess of how far off it is; `None` where the steps do not
+    /// settle.
+    fn lowest_by_secants(&mut self, xi: f64, (begin, slope): (f64, f64), guess: f64) -> Option<f64> {
+        let (mut last, mut before, mut off) = (0.0, slope, guess);
         for _ in 0..SECANTS {
-            let slope = self.level.slope(xi, eta);
+            let slope = self.level.slope(xi, begin + off);
             if slope.is_nan() && last == 0.0 {
                 // The first guess may lie off a body.
-                eta /= 2.0;
+                off /= 2.0;
                 continue;
             }
             if slope.abs() <= SLOPE_ROUNDINGS * f64::EPSILON {
-                return Some(eta);
+                return Some(begin + off);
             }
             // The gap opens as η grows.
-            let opens = (slope - before) * (eta - last) > 0.0;
+            let opens = (slope - before) * (off - last) > 0.0;
             if !opens {
                 return None;
             }
-            let step = slope * ((eta - last) / (slope - before));
-            (last, before, eta) = (eta, slope, eta - step);
+            let step = slope * ((off - last) / (slope - before));
+            (last, before, off) = (off, slope, off - step);
             if step.abs() <= QUADRATIC * guess.abs() {
-                return Some(eta);
+                return Some(begin + off);
             }
         }
         None

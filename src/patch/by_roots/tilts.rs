@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::numerics::direction;
 use crate::numerics::interval::Interval;
-use crate::patch::in_valleys::circle::{FARTHEST, Turned};
+use crate::patch::in_valleys::circle::{FARTHEST_SINE, Turned};
 
 /// Rounding of an angle of a surface.
 pub(super) const ANGLE_ROUNDING: f64 = 1e-14;
@@ -37,15 +37,8 @@ impl<'a> Tilts<'a> {
     /// Makes the bounds of a wheel's surface; that of a roller is one upside down.
     pub(super) fn new(turned: Turned<'a>) -> Self {
         let mut tilts = Self { turned, radii: Interval::NONE };
-        let section = turned.section;
-        for (k, piece) in section.pieces.iter().enumerate() {
-            let steepest = section.slopes(k).magnitude();
-            let heights = if steepest.is_finite() {
-                // Half-way between its ends a curve is farthest from both.
-                Interval::between(piece.heights[0], piece.heights[1]).grown(steepest * piece.xi.width() / 2.0)
-            } else {
-                section.branches[piece.branch].height_bounds(piece.xi)
-            };
+        for piece in &turned.section.pieces {
+            let heights = turned.section.branches[piece.branch].height_bounds(piece.xi);
             tilts.radii = tilts.radii.hull(tilts.radii_of(piece.xi, heights));
         }
         tilts
@@ -85,8 +78,7 @@ impl<'a> Tilts<'a> {
         let Turned { tilt, skew, .. } = self.turned;
         let [sin, cos] = [skew.im, skew.re].map(Interval::of);
         let (own_xi, own_eta) = (xi * cos + eta * sin, eta * cos + -(xi * sin));
-        let most = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHEST);
-        if self.radii.is_empty() || own_eta.magnitude() > most * self.radii.low {
+        if self.radii.is_empty() || own_eta.magnitude() > FARTHEST_SINE * self.radii.low {
             return None;
         }
         let [slopes, radii] = self.profile_over([own_xi, own_eta])?;

@@ -2,7 +2,7 @@
 //! t + δ (1 − cos α).
 //!
 //! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
-//! nearer to each other around C. Where two neighbours differ in the number of their slices, or an end moves far between them,
+//! nearer to each other around C, and on the joints of swept bodies. Where two neighbours differ in the number of their slices, or an end moves far between them,
 //! intervals begin, end, divide or join in between; lines are then added there until that place is known to rounding.
 //!
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
@@ -11,7 +11,7 @@ use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::by_roots::divides_lines;
 use crate::patch::in_valleys::slicer::Edge;
-use crate::patch::level::Level;
+use crate::patch::level::{Level, joints};
 use crate::patch::window::Window;
 use crate::placement::Placement;
 
@@ -121,8 +121,19 @@ impl<'a> BySamples<'a> {
         };
         let over = reach.map(|reach| window.xi.cut(reach));
         let Some(xi) = over.filter(|xi| xi.has_width() && eta.has_width()) else { return Vec::new() };
-        let lines: Vec<SlicedLine> =
-            places(xi, STEP).into_iter().map(|xi| self.whole_line(xi, eta)).collect();
+        let mut all = places(xi, STEP);
+        // At a joint parts may be parted, however near to each other.
+        let mut joints = joints(placement, self.level.normal_gap(), xi);
+        if placement.lofted().is_none() {
+            joints.extend(placement.wheel().section.joints(xi).map(|(joint, _)| joint));
+        }
+        for joint in joints.into_iter().filter(|joint| xi.surrounds(*joint)) {
+            if all.iter().all(|place| (place - joint).abs() > nearest(*place, joint)) {
+                all.push(joint);
+            }
+        }
+        all.sort_by(f64::total_cmp);
+        let lines: Vec<SlicedLine> = all.into_iter().map(|xi| self.whole_line(xi, eta)).collect();
         self.refined(lines)
     }
 
@@ -276,8 +287,7 @@ impl<'a> BySamples<'a> {
                 out.push(next);
                 continue;
             };
-            let nearest = NEAREST * last.xi.abs().max(next.xi.abs()).max(1.0);
-            if next.xi - last.xi <= nearest || out.len() > MOST_LINES {
+            if next.xi - last.xi <= nearest(last.xi, next.xi) || out.len() > MOST_LINES {
                 out.push(next);
                 continue;
             }
@@ -290,6 +300,11 @@ impl<'a> BySamples<'a> {
         }
         out
     }
+}
+
+/// Returns the distance of two lines at which none is laid between them \[mm\].
+fn nearest(from: f64, to: f64) -> f64 {
+    NEAREST * from.abs().max(to.abs()).max(1.0)
 }
 
 /// Lists the pairs of overlapping intervals of two lines.

@@ -11,6 +11,8 @@ use crate::profile::{Branch, Section};
 /// Farthest place from the midplane that is examined, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is treated as if it ended
 /// at 0.7 ρ.
 pub(in crate::patch) const FARTHEST: f64 = 0.369;
+/// sin v there.
+pub(in crate::patch) const FARTHEST_SINE: f64 = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHEST);
 
 /// Distance of a point beside an end or step, as a share of R. It is a million roundings, and less than any segment.
 pub(in crate::patch) const BESIDE: f64 = 1e-9;
@@ -206,13 +208,19 @@ impl<'a> Turned<'a> {
         ((self.skew.im / (self.tilt.im * self.skew.re)).atan() / 2.0).tan()
     }
 
+    /// Returns the η \[mm\] at which lines of constant ξ touch the circles of both ends of the profile, as far as [`FARTHEST`].
+    pub(in crate::patch) fn turning_of_ends(&self) -> [f64; 2] {
+        let (pieces, t) = (&self.section.pieces, self.touching().clamp(-FARTHEST, FARTHEST));
+        let at = |piece: usize, end: usize| self.place(&self.circle(piece, pieces[piece].xi[end]), t).eta;
+        pieces.len().checked_sub(1).map_or([0.0; 2], |last| [at(0, 0), at(last, 1)])
+    }
+
     /// Returns both t at which a circle crosses the ends of a range of η, widened a little.
     pub(super) fn turns(&self, circle: &Circle, eta: Interval) -> [f64; 2] {
-        let most = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHEST);
         eta.grown(MARGIN * eta.width()).ends().map(|eta| {
             // The circle also moves along the profile as it turns. This is left out, and the margin covers it.
             let sin = (eta - circle.p * self.skew.im) / (self.skew.re * circle.radius);
-            let sin = sin.clamp(-most, most);
+            let sin = sin.clamp(-FARTHEST_SINE, FARTHEST_SINE);
             sin / (1.0 + (1.0 - sin * sin).sqrt())
         })
     }
