@@ -102,8 +102,11 @@ impl Patch {
     /// only where it is shallower than 1e-12 mm, beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a
     /// hollow kink of a skewed wheel, where it is shallower than 1e-4 mm.
     ///
-    /// The patch is found from samples where a body varies, and where a hollow kink gives the lines on a roller two lowest places that may
-    /// differ by more than that. Then a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
+    /// Without skew on a rail, what lies beyond the end of a tilted wheel, ahead of C and behind, is left out.
+    ///
+    /// The patch is found from samples where a body varies, and on a roller where a hollow kink gives the lines two lowest places that may
+    /// differ by more than that, or where lines leave a tilted body over its end within the patch and enter it again.
+    /// Then a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
     /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
     /// the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
@@ -116,7 +119,7 @@ impl Patch {
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
     /// in [`Self::new`] with skew or on a roller. On a rail the patch is where the point of the rail, raised by δ cos α along its normal,
     /// lies in the wheel. Where the wheel's surface ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points
-    /// along the normals end.
+    /// along the normals end. Without skew, what lies between both parts beyond the end of a tilted wheel counts as theirs.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }

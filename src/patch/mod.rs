@@ -5,6 +5,7 @@ mod by_roots;
 mod by_samples;
 mod components;
 mod corners;
+mod divided;
 mod edges;
 mod grading;
 pub(crate) mod in_valleys;

@@ -144,19 +144,25 @@ fn hollow_wheels_and_throats_have_theirs() {
 }
 
 /// A crown of 50 mm radius under a cone of 45° that ends beside C, on the left or on the right.
-fn at_the_end(from: f64, to: f64, yaw: f64) -> Placement {
+fn at_the_end(from: f64, to: f64, yaw: f64, roller: Option<f64>) -> Placement {
     let rail = Arc::about([0.0, -50.0], 50.0, Half::Upper, [-45.0, 20.0]).and_then(profile);
     let wheel = Arc::line([from, from], [to, to]).and_then(profile);
     let pair = Pair::new(rail.expect("a crown"), wheel.expect("a cone"), 460.0).expect("a pair");
+    let pair = roller.map_or(Ok(pair.clone()), |radius| pair.on_roller(radius)).expect("a roller");
     pair.placed(-50.0 / 2f64.sqrt(), 0.0, yaw).expect("a placement")
+}
+
+/// The most intervals of a patch on one of many lines.
+fn most_slices(patch: &Patch, xi: Interval) -> usize {
+    (0..400).map(|k| sliced(patch, xi.step(2 * k + 1, 800)).len()).max().unwrap_or(0)
 }
 
 #[test]
 fn the_end_of_a_wheel_beside_the_midplane() {
     for yaw in [-0.05, -0.01, 0.01, 0.05] {
-        let left = check(&format!("left end, yaw {yaw}"), &at_the_end(-0.05, 20.0, yaw), 0.2);
+        let left = check(&format!("left end, yaw {yaw}"), &at_the_end(-0.05, 20.0, yaw, None), 0.2);
         assert_eq!(left.components.len(), 1, "yaw {yaw}");
-        check(&format!("right end, yaw {yaw}"), &at_the_end(-20.0, 0.05, yaw), 0.2);
+        check(&format!("right end, yaw {yaw}"), &at_the_end(-20.0, 0.05, yaw, None), 0.2);
     }
 }
 
@@ -180,13 +186,25 @@ fn the_end_of_a_wheel_on_a_roller() {
 #[test]
 fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {
     for yaw in [-1e-3, 1e-3] {
-        let placement = at_the_end(-20.0, 0.05, yaw);
+        let placement = at_the_end(-20.0, 0.05, yaw, None);
         let patch = check(&format!("yaw {yaw}"), &placement, 0.2);
         let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
         assert_eq!((c.ends, c.holes.len()), ([End::Tip; 2], 0), "yaw {yaw}");
-        let most = (0..400).map(|k| c.xi.low + c.xi.width() * (f64::from(k) + 0.5) / 400.0);
-        let most = most.map(|xi| sliced(&patch, xi).len()).max();
-        assert_eq!(most, Some(2), "yaw {yaw}");
+        assert_eq!(most_slices(&patch, c.xi), 2, "yaw {yaw}");
+    }
+}
+
+/// On a roller, with and without yaw, these lines are sampled.
+#[test]
+fn both_prongs_beyond_a_hollow_end_are_found() {
+    for yaw in [0.0, 1e-3, -0.01] {
+        let (name, roller) = (format!("on a roller, yaw {yaw}"), Some(350.0));
+        let patch = check(&name, &at_the_end(-20.0, 0.05, yaw, roller), 0.2);
+        let [c] = patch.components.as_slice() else {
+            panic!("{name}: {} components", patch.components.len())
+        };
+        assert_eq!(most_slices(&patch, c.xi), 2, "{name}");
+        check(&name, &at_the_end(-0.05, 20.0, yaw, roller), 0.2);
     }
 }
 

@@ -3,8 +3,8 @@
 //!
 //! Along a line of constant ξ or σ both bodies bend away from each other, so that the gap falls to one lowest place and rises on
 //! either side of it. Without skew that place is η = 0. A skewed wheel has a second one only where a hollow of its profile has
-//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles: at a hollow kink. [`divides_lines`] tells
-//! where that counts.
+//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles: at a hollow kink. Where that counts, slices are
+//! found from samples.
 
 mod bounds;
 mod tilts;
@@ -12,12 +12,13 @@ pub(super) mod turns;
 
 use bounds::GapBounds;
 
+use super::divided::opening;
 use super::in_valleys::circle::{FARTHEST_SINE, Turned};
 use super::in_valleys::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
 use super::level::Level;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
-use crate::placement::{Body, Placement};
+use crate::placement::Placement;
 use crate::profile::Section;
 
 /// Factor by which an end of a slice is sought farther out.
@@ -32,36 +33,6 @@ const BESIDE_END: f64 = 1e-6;
 
 /// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
 const SLOPE_ROUNDINGS: f64 = 8.0;
-
-/// Height \[mm\] of one lowest place of a line over another that may be missed: samples, which would find both, miss parts as deep.
-const LOW_RIDGE: f64 = 1e-4;
-
-/// Returns the coefficient \[1/mm\] of η² in the gap at C, without skew.
-fn opening(placement: &Placement) -> f64 {
-    let around = |body: &Body| body.section.frame.cos / body.axle_distance();
-    0.5 * (around(placement.wheel()) + around(placement.rail()))
-}
-
-/// Returns whether a line of constant ξ may have two lowest places near or within the patch, as it crosses a hollow kink of a skewed
-/// wheel on a roller.
-///
-/// At the kink the slope of the gap along the line falls by sin χ times the change of the profile's slope, J. With a the opening the
-/// two places are up to J/2a apart, and one of them up to J²/4a lower than the other.
-pub(in crate::patch) fn divides_lines(placement: &Placement, approach: f64) -> bool {
-    if placement.under().is_none() || placement.skew() == 0.0 {
-        return false;
-    }
-    let (wheel, roller) = (&placement.wheel().section, &placement.rail().section);
-    let lower = |slope: f64| (slope * placement.skew().sin()).powi(2) / (4.0 * opening(placement));
-    wheel.pieces.windows(2).any(|pair| {
-        let (xi, slopes) = (pair[1].xi.low, [wheel.end_slope(&pair[0], 1), wheel.end_slope(&pair[1], 0)]);
-        let Some(below) = roller.branch_at(xi).filter(|_| pair[0].xi.high == xi) else { return false };
-        // Along the line and along the circle of the kink the gap falls by no more.
-        let steepest = slopes[0].abs().max(slopes[1].abs()) + below.chord_slope(xi, xi).abs();
-        let least = pair[1].heights[0] - below.height(xi) - lower(steepest);
-        lower((slopes[0] - slopes[1]).max(0.0)) > LOW_RIDGE && least < approach
-    })
-}
 
 /// Returns the sections along which a line of constant ξ or σ moves as η grows: the wheel's, and that of a roller.
 pub(super) fn sections(placement: &Placement) -> [Option<&Section>; 2] {
@@ -98,7 +69,8 @@ impl<'a> ByRoots<'a> {
         let crown = level.normal_gap().map(|gap| gap.rail().clone());
         let bounds = GapBounds::new(placement, crown, (approach, opening))?;
         let (skewed, farthest) = (placement.skew() != 0.0, FARTHEST_SINE * placement.rolling_radius());
-        let turning = Turned::new(placement).turning_of_ends();
+        let turned = Turned::new(placement);
+        let turning = [0, 1].map(|end| turned.touched(end).map_or(0.0, |(place, _)| place.eta));
         Some(Self { level, bounds, skewed, approach, opening, farthest, turning, step, steps })
     }
 

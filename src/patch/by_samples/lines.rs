@@ -9,7 +9,7 @@
 
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
-use crate::patch::by_roots::divides_lines;
+use crate::patch::divided::lines_divide;
 use crate::patch::in_valleys::slicer::Edge;
 use crate::patch::level::{Level, joints};
 use crate::patch::window::Window;
@@ -96,7 +96,7 @@ pub(crate) struct BySamples<'a> {
 impl<'a> BySamples<'a> {
     /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples.
     pub(crate) fn apply_to(placement: &Placement, approach: f64) -> bool {
-        placement.lofted().is_some() || divides_lines(placement, approach)
+        placement.lofted().is_some() || lines_divide(placement, approach)
     }
 
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].

@@ -44,9 +44,9 @@ pub(super) struct Circle {
 
 /// A point of the tangent plane, \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PlanePoint {
-    pub(super) xi: f64,
-    pub(super) eta: f64,
+pub(in crate::patch) struct PlanePoint {
+    pub(in crate::patch) xi: f64,
+    pub(in crate::patch) eta: f64,
 }
 
 /// The place on the circle of a profile point where the surface is parallel to η.
@@ -208,11 +208,15 @@ impl<'a> Turned<'a> {
         ((self.skew.im / (self.tilt.im * self.skew.re)).atan() / 2.0).tan()
     }
 
-    /// Returns the η \[mm\] at which lines of constant ξ touch the circles of both ends of the profile, as far as [`FARTHEST`].
-    pub(in crate::patch) fn turning_of_ends(&self) -> [f64; 2] {
-        let (pieces, t) = (&self.section.pieces, self.touching().clamp(-FARTHEST, FARTHEST));
-        let at = |piece: usize, end: usize| self.place(&self.circle(piece, pieces[piece].xi[end]), t).eta;
-        pieces.len().checked_sub(1).map_or([0.0; 2], |last| [at(0, 0), at(last, 1)])
+    /// Returns where a line of constant ξ touches the circle of the left (0) or right (1) end of the profile, at most as far off as
+    /// [`FARTHEST`], and ζ of the wheel there \[mm\].
+    pub(in crate::patch) fn touched(&self, end: usize) -> Option<(PlanePoint, f64)> {
+        let pieces = &self.section.pieces;
+        let last = pieces.len().checked_sub(1)?;
+        let piece = [0, last][end];
+        let (circle, t) =
+            (self.circle(piece, pieces[piece].xi[end]), self.touching().clamp(-FARTHEST, FARTHEST));
+        Some((self.place(&circle, t), self.height(&circle, t)))
     }
 
     /// Returns both t at which a circle crosses the ends of a range of η, widened a little.
@@ -227,7 +231,7 @@ impl<'a> Turned<'a> {
 
     /// Returns whether lines of constant ξ leave the wheel over one end of its profile, the left (0) or the right (1), and
     /// enter it again.
-    pub(super) fn is_hollow(&self, end: usize) -> bool {
+    pub(in crate::patch) fn is_hollow(&self, end: usize) -> bool {
         if end == 0 { self.tilt.im < 0.0 } else { self.tilt.im > 0.0 }
     }
 

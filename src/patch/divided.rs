@@ -1,0 +1,52 @@
+//! Tells where a line of constant ξ may meet a patch on a roller in several intervals of η.
+
+use super::in_valleys::circle::Turned;
+use crate::placement::{Body, Placement};
+
+/// Height \[mm\] of one lowest place of a line over another that may be missed: samples, which would find both, miss parts as deep.
+const LOW_RIDGE: f64 = 1e-4;
+
+/// Returns the coefficient \[1/mm\] of η² in the gap at C, without skew.
+pub(super) fn opening(placement: &Placement) -> f64 {
+    let around = |body: &Body| body.section.frame.cos / body.axle_distance();
+    0.5 * (around(placement.wheel()) + around(placement.rail()))
+}
+
+/// Returns whether a line on a roller may have two lowest places near or within the patch at approach δ \[mm\]: at a hollow kink or beyond a
+/// hollow end.
+pub(super) fn lines_divide(placement: &Placement, approach: f64) -> bool {
+    placement.under().is_some_and(|under| {
+        (placement.skew() != 0.0 && has_hollow_kink(placement, approach))
+            || has_hollow_end(placement, under, approach)
+    })
+}
+
+/// Returns whether a hollow kink of a skewed wheel on a roller divides lines that cross it.
+///
+/// At the kink the slope of the gap along the line falls by sin χ times the change of the profile's slope, J. With a the opening the
+/// two places are up to J/2a apart, and one of them up to J²/4a lower than the other.
+fn has_hollow_kink(placement: &Placement, approach: f64) -> bool {
+    let (wheel, roller) = (&placement.wheel().section, &placement.rail().section);
+    let lower = |slope: f64| (slope * placement.skew().sin()).powi(2) / (4.0 * opening(placement));
+    wheel.pieces.windows(2).any(|pair| {
+        let (xi, slopes) = (pair[1].xi.low, [wheel.end_slope(&pair[0], 1), wheel.end_slope(&pair[1], 0)]);
+        let Some(below) = roller.branch_at(xi).filter(|_| pair[0].xi.high == xi) else { return false };
+        // Along the line and along the circle of the kink the gap falls by no more.
+        let steepest = slopes[0].abs().max(slopes[1].abs()) + below.chord_slope(xi, xi).abs();
+        let least = pair[1].heights[0] - below.height(xi) - lower(steepest);
+        lower((slopes[0] - slopes[1]).max(0.0)) > LOW_RIDGE && least < approach
+    })
+}
+
+/// Returns whether lines leave the wheel or the roller, which is `under` upside down, over an end of its profile where the gap is below δ, and
+/// enter it again.
+fn has_hollow_end(placement: &Placement, under: &Placement, approach: f64) -> bool {
+    let facing = [(placement, placement.rail(), -1.0), (under, placement.wheel(), 1.0)];
+    facing.into_iter().any(|(body, other, sign)| {
+        let turned = Turned::new(body);
+        let gap = |end: usize| {
+            turned.touched(end).map(|(place, height)| height + sign * other.section.height(place.xi))
+        };
+        (0..2).any(|end| turned.is_hollow(end) && gap(end).is_some_and(|gap| gap < approach))
+    })
+}
