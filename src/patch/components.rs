@@ -119,7 +119,7 @@ impl Patch {
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
     /// in [`Self::new`] with skew or on a roller. On a rail the patch is where the point of the rail, raised by δ cos α along its normal,
     /// lies in the wheel. Where the wheel's surface ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points
-    /// along the normals end. Without skew, what lies between both parts beyond the end of a tilted wheel counts as theirs.
+    /// along the normals end. Without skew on a rail, what lies between both parts beyond the end of a tilted wheel counts as theirs.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }
@@ -275,25 +275,25 @@ impl BandGroup {
     /// `None` if it is not known yet.
     fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
         let whole = self.xi().width();
-        let by_samples = outline.slicer.by_samples.is_some();
-        let plain = outline.slicer.placement().skew() == 0.0 && !by_samples;
+        let sampled = outline.slicer.by_samples.is_some();
+        let plain = outline.slicer.placement().skew() == 0.0 && !sampled;
         let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
-            let over_surface = outline.slicer.is_over_rail() && !by_samples;
+            let over_surface = outline.slicer.is_over_rail() && !sampled;
             if over_surface || outline.slicer.by_roots.is_some() {
                 corners::over_joints(&mut outline.slicer, band, &mut more);
             } else if let Some(least) = least {
                 corners::plain(outline, band, least, &mut more);
-            } else if !by_samples {
+            } else if !sampled {
                 let eta = reach(outline, band);
                 corners::on_circles(outline, band, eta, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
             band.fit(outline);
-            if by_samples {
+            if sampled {
                 // Its interpolants are smooth between their own ends only.
                 band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi.high));
                 sort(&mut band.corners);

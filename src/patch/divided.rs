@@ -3,7 +3,8 @@
 use super::in_valleys::circle::Turned;
 use crate::placement::{Body, Placement};
 
-/// Height \[mm\] of one lowest place of a line over another that may be missed: samples, which would find both, miss parts as deep.
+/// Largest height \[mm\] of the lowest place that is found by roots over another one of its line. Samples would find both, but miss parts that
+/// are as deep and narrow.
 const LOW_RIDGE: f64 = 1e-4;
 
 /// Returns the coefficient \[1/mm\] of η² in the gap at C, without skew.
@@ -38,8 +39,8 @@ fn has_hollow_kink(placement: &Placement, approach: f64) -> bool {
     })
 }
 
-/// Returns whether lines leave the wheel or the roller, which is `under` upside down, over an end of its profile where the gap is below δ, and
-/// enter it again.
+/// Returns whether lines leave the wheel or the roller over an end of its profile where the gap is below δ, and enter it again. `under` is the
+/// roller as a wheel upside down.
 fn has_hollow_end(placement: &Placement, under: &Placement, approach: f64) -> bool {
     let facing = [(placement, placement.rail(), -1.0), (under, placement.wheel(), 1.0)];
     facing.into_iter().any(|(body, other, sign)| {

@@ -297,7 +297,7 @@ fn a_thin_part_on_a_roller_is_found_wherever_it_lies() {
     }
 }
 
-/// Two contacts of one tread, with a kink between them that stands 0.2 µm above what the wheel sinks in: they are some 10 µm apart. The
+/// A wheel touches with two places and stands 0.2 µm off a kink between them after it has sunk in: the two parts are some 10 µm apart. The
 /// sides of these rails stand upright.
 #[test]
 fn parts_on_a_roller_are_parted_however_near_they_are() {

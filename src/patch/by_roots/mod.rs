@@ -3,8 +3,8 @@
 //!
 //! Along a line of constant ξ or σ both bodies bend away from each other, so that the gap falls to one lowest place and rises on
 //! either side of it. Without skew that place is η = 0. A skewed wheel has a second one only where a hollow of its profile has
-//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles: at a hollow kink. Where that counts, slices are
-//! found from samples.
+//! a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the axles: at a hollow kink. Where the second place
+//! matters, slices are found from samples instead.
 
 mod bounds;
 mod tilts;
@@ -27,8 +27,8 @@ const WIDER: f64 = 1.25;
 /// Most secant steps to the lowest place of a line. The gap is nearly a parabola along it.
 const SECANTS: usize = 10;
 
-/// Distance \[mm\] from an end of a surface at which its slope counts; also that from η = 0 at which a surface is looked for first where
-/// there is none at η = 0.
+/// Distance \[mm\] from the end of a surface at which its slope is taken. Where there is no surface at η = 0, one is looked for first at this
+/// distance from there.
 const BESIDE_END: f64 = 1e-6;
 
 /// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
@@ -52,7 +52,7 @@ pub(super) struct ByRoots<'a> {
     opening: f64,
     /// Distance \[mm\] from η = 0 up to which a surface is looked for.
     farthest: f64,
-    /// η \[mm\] at which the circles of the wheel's ends are parallel to η, or nearly.
+    /// η \[mm\] at which lines of constant ξ touch the circles of the wheel's ends, or come nearest to that.
     turning: [f64; 2],
     /// Least step of a surface \[mm\].
     step: f64,
@@ -79,8 +79,8 @@ impl<'a> ByRoots<'a> {
         !self.skewed && window.contains(0.0) && self.level.normal_gap().is_none()
     }
 
-    /// Returns η \[mm\] of the least gap at ξ: 0 without skew, with skew the end of a surface if the gap falls up to there; NaN where a body
-    /// is missing.
+    /// Returns η \[mm\] of the least gap at ξ: 0 without skew. With skew it is the end of a surface if the gap falls up to there, and NaN where
+    /// a body has no surface on the whole line.
     pub(super) fn lowest(&mut self, xi: f64) -> f64 {
         if !self.skewed {
             return 0.0;
@@ -128,8 +128,8 @@ impl<'a> ByRoots<'a> {
         met.map_or(f64::NAN, |eta| last_where(has_surface, eta, 0.0))
     }
 
-    /// Returns η \[mm\] of the least gap at ξ from a place, the slope there, and a guess of how far off it is; `None` where the steps do not
-    /// settle.
+    /// Returns η \[mm\] of the least gap at ξ. It is sought from η = `begin`, where the gap has this slope, and first at `guess` \[mm\] from
+    /// there; `None` where the steps do not settle.
     fn lowest_by_secants(&mut self, xi: f64, (begin, slope): (f64, f64), guess: f64) -> Option<f64> {
         let (mut last, mut before, mut off) = (0.0, slope, guess);
         for _ in 0..SECANTS {

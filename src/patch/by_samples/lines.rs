@@ -94,7 +94,7 @@ pub(crate) struct BySamples<'a> {
 }
 
 impl<'a> BySamples<'a> {
-    /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples.
+    /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples, and not from roots or valleys.
     pub(crate) fn apply_to(placement: &Placement, approach: f64) -> bool {
         placement.lofted().is_some() || lines_divide(placement, approach)
     }

@@ -1,5 +1,5 @@
 //! The patch found from samples along lines of constant ξ: where a body varies, a rail along the track or a wheel around its axle; and
-//! where a hollow kink of a skewed wheel on a roller divides these lines.
+//! on a roller where a hollow kink of a skewed wheel, or the end of a tilted body, divides these lines.
 
 mod bands;
 mod lines;
