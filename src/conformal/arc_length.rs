@@ -126,10 +126,11 @@ impl<'a> RailArcLength<'a> {
         Some(Interval::new(self.stretches.first()?.sigma.low, self.stretches.last()?.sigma.high))
     }
 
-    /// Returns the σ \[mm\] of the joints inside the reach, ascending, without C.
+    /// Returns the σ \[mm\] of the joints inside the reach, ascending.
     pub fn joints(&self) -> Vec<f64> {
-        let ends = self.stretches.windows(2).map(|pair| pair[1].sigma.low);
-        ends.filter(|&sigma| sigma != 0.0).collect()
+        // C parts its own piece.
+        let joined = self.stretches.windows(2).filter(|pair| pair[0].piece != pair[1].piece);
+        joined.map(|pair| pair[1].sigma.low).collect()
     }
 
     /// Returns the ranges of σ \[mm\] over which the rail is one piece of its section, ascending, each with the index of that piece. C

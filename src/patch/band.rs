@@ -11,6 +11,7 @@ use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::numerics::quadrature::smooth_integrals;
+use crate::placement::Body;
 use crate::profile::Section;
 
 /// Distance of two corners, as a share of the band's length, up to which they count as one.
@@ -40,7 +41,7 @@ pub(crate) struct Band {
     /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip, unless s is level along that end.
     pub(crate) sides: [Interval; 2],
     /// Pairs (ξ, valleys) by ascending ξ: the valleys that lie in the band up to that ξ, the deepest first, from which slices are
-    /// found. Of samples it is the band's lane; empty where slices are found by roots, and without skew over the tangent plane.
+    /// found. Of samples it is the band's lane; empty where slices are found by roots, and by the formula without skew.
     pub(super) valleys: Vec<(f64, Vec<usize>)>,
     /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,
@@ -70,17 +71,20 @@ impl Band {
     /// Fits interpolants to the edges between the corners.
     pub(super) fn fit(&mut self, outline: &mut Outline<'_>) {
         let length = self.xi.width();
+        let apart = |corner: f64, other: f64| (corner - other).abs() > ONE_CORNER * length;
         let mut corners = vec![self.xi.low];
         for &corner in &self.corners {
-            let apart = |other: f64| (corner - other).abs() > ONE_CORNER * length;
-            if apart(corners[corners.len() - 1]) && apart(self.xi.high) {
+            if apart(corner, corners[corners.len() - 1]) && apart(corner, self.xi.high) {
                 corners.push(corner);
             }
         }
         corners.push(self.xi.high);
+        // An edge with a corner next to an end may be as wide there as anywhere.
+        let blunted = |end: f64| self.corners.iter().any(|corner| *corner != end && !apart(*corner, end));
         let zero = [0, 1].map(|end| {
             let side = self.sides[end];
-            side.low == side.high && (self.ends[end] == Some(End::Tip) || self.window.surrounds(side.low))
+            let is_tip = self.ends[end] == Some(End::Tip) || self.window.surrounds(side.low);
+            side.low == side.high && is_tip && !blunted(self.xi[end])
         });
         let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end].has_width();
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
@@ -116,11 +120,16 @@ impl Band {
     }
 
     /// Returns the rounding of the square of half the width \[mm²\]: the rounding of s times the square over the depth, both in the
-    /// middle of the band. Of samples it is a share of that square.
-    fn noise(&self, outline: &mut Outline<'_>) -> f64 {
-        let rail = &outline.slicer.placement().rail().section;
+    /// middle of the band. Of samples it is a share of that square. The second one is that where the band is off the segments through C,
+    /// and heights have the rounding of the profiles' own coordinates.
+    fn noise(&self, outline: &mut Outline<'_>) -> [f64; 2] {
+        let bodies = [outline.slicer.placement().rail(), outline.slicer.placement().wheel()];
+        let rail = &bodies[0].section;
         // Over the rail's surface the arc length stands for both coordinates.
         let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
+        let off = |body: &&&Body| !self.xi.ends().iter().all(|xi| body.section.on_contact_segment(*xi, 0.0));
+        let far = |body: &&Body| body.section.frame.x.abs().max(body.section.frame.z.abs());
+        let own = bodies.iter().filter(off).map(far).fold(0.0, f64::max);
         let size = self.xi.map(|xi| height(xi) + xi.abs());
         let middle = self.xi.middle();
         let valley = self.valley(middle);
@@ -130,9 +139,10 @@ impl Band {
             .edges(middle, valley)
             .map_or(0.0, |[low, high]| ((high.eta - low.eta) / 2.0).powi(2));
         if outline.slicer.by_samples.is_some() {
-            return SMOOTH * square;
+            return [SMOOTH * square; 2];
         }
-        ROUNDINGS * f64::EPSILON * square * (1.0 + nan_max(size.low, size.high) / depth)
+        let size = nan_max(size.low, size.high);
+        [size, size + own].map(|size| ROUNDINGS * f64::EPSILON * square * (1.0 + size / depth))
     }
 
     fn stretch(&self, xi: f64) -> Option<&Stretch> {

@@ -18,7 +18,8 @@ use crate::placement::Placement;
 
 /// Number of points on each of the two sides of a loop. The polygon then lies within 1e-4 of the patch's width of the
 /// curve. Pieces between corners share the points: on an ellipse as long as the component, each piece would get points in
-/// proportion to its angle.
+/// proportion to its angle. Where an end of the wheel bounds a short piece that is as wide as the component, it gets as many as on an
+/// ellipse of that width.
 const POINTS_PER_SIDE: usize = 128;
 
 /// Least number of points on a piece of a loop between two corners.
@@ -95,14 +96,13 @@ pub struct Patch {
 
 impl Patch {
     /// Finds all components inside the window. A line of constant ξ meets a component in one interval of η. Under a skewed wheel on a
-    /// rail, and where the patch is found from samples, it may meet it in several, and a component may have holes.
+    /// rail, beyond the end of a tilted wheel, and where the patch is found from samples, it may meet it in several, and a component may
+    /// have holes.
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew a part is missed
     /// only between two turns of s along a valley between which the surfaces are parallel to 1e-13 (see the docs on numerics); on a roller,
     /// only where it is shallower than 1e-12 mm, beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a
     /// hollow kink of a skewed wheel, where it is shallower than 1e-4 mm.
-    ///
-    /// Without skew on a rail, what lies beyond the end of a tilted wheel, ahead of C and behind, is left out.
     ///
     /// The patch is found from samples where a body varies, and on a roller where a hollow kink gives the lines two lowest places that may
     /// differ by more than that, or where lines leave a tilted body over its end within the patch and enter it again.
@@ -119,7 +119,7 @@ impl Patch {
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
     /// in [`Self::new`] with skew or on a roller. On a rail the patch is where the point of the rail, raised by δ cos α along its normal,
     /// lies in the wheel. Where the wheel's surface ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points
-    /// along the normals end. Without skew on a rail, what lies between both parts beyond the end of a tilted wheel counts as theirs.
+    /// along the normals end.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }
@@ -165,7 +165,7 @@ impl Patch {
 
     /// Returns the total area \[mm²\].
     pub fn area(&self) -> f64 {
-        self.components.iter().map(|component| component.area).sum()
+        self.components.iter().fold(0.0, |area, component| area + component.area)
     }
 
     /// Returns the smallest box around all components, or `None` for an empty patch.
@@ -274,10 +274,7 @@ impl BandGroup {
     /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\],
     /// `None` if it is not known yet.
     fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
-        let whole = self.xi().width();
         let sampled = outline.slicer.by_samples.is_some();
-        let plain = outline.slicer.placement().skew() == 0.0 && !sampled;
-        let mut all = Vec::with_capacity(self.bands.len());
         for band in &mut self.bands {
             band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
@@ -298,6 +295,13 @@ impl BandGroup {
                 band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi.high));
                 sort(&mut band.corners);
             }
+        }
+        let places = |band: &Band| [band.xi.low, band.xi.middle(), band.xi.high].map(|xi| row(band, xi));
+        let places: Rows = self.bands.iter().flat_map(places).collect();
+        let whole = [self.xi(), across(&[places])].map(Interval::width);
+        let mut all = Vec::with_capacity(self.bands.len());
+        for band in &mut self.bands {
+            let mut more = Vec::new();
             let mut rows: Rows = band.rows(&graded(band, whole));
             corners::at_window(band, &rows, &mut more);
             if !more.is_empty() {
@@ -306,7 +310,8 @@ impl BandGroup {
                 sort(&mut band.corners);
                 rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
             }
-            add_farthest(band, plain, &mut rows);
+            let mirrored = outline.slicer.is_mirrored(band.valley(band.xi.low));
+            add_farthest(band, mirrored, &mut rows);
             rows.dedup_by_key(|row| row[0]);
             all.push(rows);
         }
@@ -373,8 +378,8 @@ fn reach(outline: &mut Outline<'_>, band: &Band) -> Interval {
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.
-fn add_farthest(band: &Band, plain: bool, rows: &mut Rows) {
-    let symmetric = plain && band.window.low == -band.window.high;
+fn add_farthest(band: &Band, mirrored: bool, rows: &mut Rows) {
+    let symmetric = mirrored && band.window.low == -band.window.high;
     let branches: &[usize] = if symmetric { &[1] } else { &[0, 1] };
     let mut more = Vec::new();
     for &branch in branches {
@@ -401,13 +406,17 @@ fn across(rows: &[Rows]) -> Interval {
 }
 
 /// Returns every corner of a band, and ξ between two corners, which crowd towards round ends. `whole` is the length of the
-/// component along ξ.
-fn graded(band: &Band, whole: f64) -> Vec<f64> {
-    let (grading, share) = (band.grading(), band.xi.width() / whole);
+/// component along ξ and η.
+fn graded(band: &Band, whole: [f64; 2]) -> Vec<f64> {
+    let (grading, share) = (band.grading(), band.xi.width() / whole[0]);
+    let edges: Vec<Interval> = band.corners.iter().map(|&xi| band.slice(xi).eta).collect();
     let mut nodes = Vec::with_capacity(2 * POINTS_PER_SIDE);
     nodes.push(band.corners[0]);
     for (piece, t) in band.pieces().enumerate() {
-        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share * t.width()).round() as usize);
+        let [from, to] = [edges[piece], edges[piece + 1]];
+        // Both sides of an ellipse rise by half of its width.
+        let rise = (to.low - from.low).abs().max((to.high - from.high).abs()) / (2.0 * whole[1]);
+        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * (share * t.width()).max(rise)).round() as usize);
         nodes.extend((1..n).map(|k| grading.xi(t.step(k, n))));
         nodes.push(band.corners[piece + 1]);
     }

@@ -2,6 +2,7 @@
 
 use super::band::{Band, ONE_CORNER, extrapolated, halved};
 use super::by_roots::sections;
+use super::in_valleys::slicer::InValleys;
 use super::loops::Rows;
 use super::outline::Outline;
 use super::slice::Slicer;
@@ -32,21 +33,25 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
     let frame = placement.wheel().section.frame;
     let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
     for (p, height) in placement.wheel().section.joints(band.xi.grown(far)) {
-        let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
-        if frame.sin == 0.0 || miss(0.0) >= 0.0 {
-            if frame.sin == 0.0 {
-                corners.extend(band.xi.surrounds(p).then_some(p));
-            }
+        if frame.sin == 0.0 {
+            corners.extend(band.xi.surrounds(p).then_some(p));
             continue;
         }
-        let mut high = (approach - deepest).abs() / frame.cos;
+        let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
+        // A joint beside the band may lie over no rail.
+        let reached = band.xi.map(|xi| (xi - p) / frame.sin);
+        let low = reached.low.min(reached.high).max(0.0);
+        if miss(low) >= 0.0 {
+            continue;
+        }
+        let mut high = low + (approach - deepest).abs() / frame.cos;
         for _ in 0..DOUBLINGS {
             if miss(high).is_nan() || miss(high) > 0.0 || high > placement.rolling_radius() {
                 break;
             }
             high *= 2.0;
         }
-        let root = bracketed(miss, 0.0, high).map(|e| p + e * frame.sin);
+        let root = bracketed(miss, low, high).map(|e| p + e * frame.sin);
         corners.extend(root.filter(|&xi| band.xi.surrounds(xi)));
     }
 }
@@ -56,22 +61,56 @@ pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &
 pub(super) fn on_circles(outline: &Outline<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
     let Some(in_valleys) = &outline.slicer.in_valleys else { return };
     let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail().section);
-    in_valleys.valleys.circles(band.xi, eta, |place, [from, to]| {
-        let depth = |t: f64| {
-            let [xi, height] = place(t);
-            height - rail.height(xi) - approach
-        };
-        let at = |k: usize| from + (to - from) * k as f64 / CIRCLE_INTERVALS as f64;
-        let mut before = depth(from);
-        for k in 1..=CIRCLE_INTERVALS {
-            let here = depth(at(k));
-            if before * here < 0.0 {
-                let root = bracketed(depth, at(k - 1), at(k)).map(|t| place(t)[0]);
-                corners.extend(root.filter(|&xi| band.xi.surrounds(xi)));
-            }
-            before = here;
-        }
+    in_valleys.valleys.visit_joints((band.xi, eta), |place, range| {
+        let depth = |xi: f64, height: f64| height - rail.height(xi) - approach;
+        let roots = roots_on_circle(place, range, depth).into_iter();
+        corners.extend(roots.filter(|&xi| band.xi.surrounds(xi)));
     });
+}
+
+/// Appends the σ inside a band where the circle of an end or step of the wheel's surface passes the raised curve of the rail's surface.
+/// `eta` is the range of η of the band.
+fn on_rims(slicer: &Slicer<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
+    let Some(InValleys { valleys, raised, .. }) = &slicer.in_valleys else { return };
+    let Some(reach) = raised.reach() else { return };
+    let over = Interval::around(band.xi.ends().map(|sigma| raised.xi(sigma)));
+    let sigma = |xi: f64| raised.sigmas(xi, reach).first().copied().unwrap_or(f64::NAN);
+    valleys.visit_rims((over, eta), |place, range| {
+        let depth = |xi: f64, height: f64| {
+            let at = raised.at(sigma(xi));
+            height - raised.rail().height(at.foot) - at.moved[1]
+        };
+        let roots = roots_on_circle(place, range, depth).into_iter().map(sigma);
+        corners.extend(roots.filter(|&sigma| band.xi.surrounds(sigma)));
+    });
+}
+
+/// Returns ξ of the places on a circle, between both ends of a range of t, where the depth at its \[ξ, ζ\] is 0.
+fn roots_on_circle(
+    place: &dyn Fn(f64) -> [f64; 2],
+    [from, to]: [f64; 2],
+    mut depth: impl FnMut(f64, f64) -> f64,
+) -> Vec<f64> {
+    let mut depth = |t: f64| {
+        let [xi, height] = place(t);
+        depth(xi, height)
+    };
+    let at = |k: usize| from + (to - from) * k as f64 / CIRCLE_INTERVALS as f64;
+    let mut roots = Vec::new();
+    let mut before = depth(from);
+    for k in 1..=CIRCLE_INTERVALS {
+        let (mut ends, here) = ([at(k - 1), at(k)], depth(at(k)));
+        // Beside the rail there is no depth.
+        if let Some(off) = [before, here].iter().position(|depth| depth.is_nan()) {
+            ends[off] = last_where(|t| !depth(t).is_nan(), ends[1 - off], ends[off]);
+        }
+        let [first, last] = ends.map(&mut depth);
+        if first * last < 0.0 {
+            roots.extend(bracketed(&mut depth, ends[0], ends[1]).map(|t| place(t)[0]));
+        }
+        before = here;
+    }
+    roots
 }
 
 /// Appends the ξ or σ inside a band at which an edge passes a joint of the wheel or of a roller, on a roller and over the rail's
@@ -79,10 +118,11 @@ pub(super) fn on_circles(outline: &Outline<'_>, band: &Band, eta: Interval, corn
 ///
 /// Method: the abscissae of the profiles' points under both edges are followed from tip to tip; between two places on different sides
 /// of a joint a root is sought. Degenerate case: a joint that an edge passes twice between two of these places is left to the
-/// boundary's interpolants.
+/// boundary's interpolants. Over the rail's surface the ends and steps of the wheel's surface count, too.
 pub(super) fn over_joints(slicer: &mut Slicer<'_>, band: &Band, corners: &mut Vec<f64>) {
     let grading = band.grading();
     let mut trail = JointTrail { slicer, band, known: [[f64::NAN; 3]; 2] };
+    let mut eta = Interval::NONE;
     let mut before = trail.feet(band.xi.low);
     for k in 1..=JOINT_PLACES {
         let xi = if k == JOINT_PLACES { band.xi.high } else { grading.xi(k as f64 / JOINT_PLACES as f64) };
@@ -90,8 +130,10 @@ pub(super) fn over_joints(slicer: &mut Slicer<'_>, band: &Band, corners: &mut Ve
         if let (Some(before), Some(here)) = (&before, &here) {
             trail.between([before, here], ONE_CORNER * band.xi.width(), corners);
         }
+        eta = here.iter().flat_map(|here| here.edges).fold(eta, Interval::with);
         before = here;
     }
+    on_rims(slicer, band, eta.grown(eta.width() / 2.0), corners);
     corners.retain(|xi| band.xi.surrounds(*xi));
 }
 
@@ -126,7 +168,8 @@ impl JointTrail<'_, '_> {
 
     /// Appends the ξ between two places, to within `enough` \[mm\], at which an edge passes a joint.
     fn between(&mut self, ends: [&EdgeFeet; 2], enough: f64, corners: &mut Vec<f64>) {
-        let sides = if self.slicer.placement().skew() == 0.0 { 1..2 } else { 0..2 };
+        let mirrored = self.slicer.is_mirrored(self.band.valley(ends[0].xi));
+        let sides = if mirrored { 1..2 } else { 0..2 };
         self.known = ends.map(|end| halved(end.xi, end.edges));
         for (side, body) in sides.flat_map(|side| [(side, 0), (side, 1)]) {
             let [from, to] = ends.map(|end| end.abscissae[side][body]);

@@ -1,5 +1,5 @@
 //! Finds the bands of a patch that a line of constant ξ meets in at most one interval: on a roller, and without skew over the tangent
-//! plane of a rail.
+//! plane of a rail unless lines enter the wheel again over its end.
 
 use super::band::{Band, Turn, steps};
 use super::by_roots::turns::LeastGap;

@@ -17,6 +17,10 @@ use crate::separation::{Relief, ReliefPoint};
 /// Rounding of the direction of the raised curve.
 const DIRECTION_NOISE: f64 = 1e-13;
 
+/// Angle \[rad\] of a joint of the rail up to which the raised curve goes on over it. What a larger one tears apart is less than a
+/// millionth of δ.
+const KINK: f64 = 1e-6;
+
 /// The raised profile of an extruded rail under a wheel of revolution.
 #[derive(Debug)]
 pub(super) struct Raised<'a> {
@@ -220,6 +224,16 @@ impl<'a> Raised<'a> {
         let run = |sigma: &Lanes| sigma.map(|sigma| self.direction(sigma)[0]);
         sign_changes(run, piece.sigma, DIRECTION_NOISE, &mut turns);
         piece.sigma.parts(turns).collect()
+    }
+
+    /// Returns the σ inside a range \[mm\] at which the raised curve jumps, at kinks of the rail.
+    pub(super) fn jumps(&self, over: Interval) -> Vec<f64> {
+        let joints = self.surface.as_ref().map(RailArcLength::joints).unwrap_or_default();
+        let leaps = |sigma: f64| {
+            let [before, after] = [sigma, sigma.next_up()].map(|sigma| self.at(sigma).moved);
+            (after[0] - before[0]).hypot(after[1] - before[1]) > KINK * self.approach.abs()
+        };
+        joints.into_iter().filter(|sigma| over.surrounds(*sigma) && leaps(*sigma)).collect()
     }
 
     /// Returns the part of a run whose ξ lie in an interval \[mm\]; `None` if there is none.

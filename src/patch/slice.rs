@@ -6,6 +6,7 @@
 use super::by_roots::ByRoots;
 use super::by_roots::turns::LeastGap;
 use super::by_samples::BySamples;
+use super::divided::lines_reenter;
 use super::in_valleys::slicer::{Edge, InValleys, STEP_ROUNDINGS, between, on_surface};
 use super::level::{Level, joints};
 use super::raised::RaisedLanes;
@@ -53,7 +54,7 @@ pub struct Slicer<'a> {
     spans: Vec<Span>,
     /// The slices of swept bodies on a roller; `None` on a rail.
     pub(super) by_roots: Option<ByRoots<'a>>,
-    /// The slices of swept bodies on a rail, under a skewed wheel or over the rail's surface; otherwise `None`.
+    /// The slices of swept bodies on a rail under a skewed wheel, over the rail's surface, or beyond an end of the wheel; otherwise `None`.
     pub(super) in_valleys: Option<InValleys<'a>>,
     /// The normal gap of these slices over the rail's surface; otherwise `None`.
     normal: Option<Level<'a>>,
@@ -75,7 +76,8 @@ impl<'a> Slicer<'a> {
         let on_rail = !sampled && !on_roller;
         let normal = (on_rail && reference == Reference::Rail).then(level);
         let surface = normal.as_ref().and_then(Level::normal_gap).map(|gap| gap.rail().clone());
-        let in_valleys = on_rail && (surface.is_some() || placement.skew() != 0.0);
+        let skewed = placement.skew() != 0.0;
+        let in_valleys = on_rail && (surface.is_some() || skewed || lines_reenter(placement, approach));
         Self {
             placement,
             wheel: WheelSurface::new(placement),
@@ -102,6 +104,15 @@ impl<'a> Slicer<'a> {
     fn level_mut(&mut self) -> Option<&mut Level<'a>> {
         let of_roots = self.by_roots.as_mut().map(|by_roots| &mut by_roots.level);
         self.by_samples.as_mut().map(|by_samples| &mut by_samples.level).or(of_roots).or(self.normal.as_mut())
+    }
+
+    /// Returns whether both edges of the slices around a valley mirror each other.
+    pub(super) fn is_mirrored(&self, valley: Option<usize>) -> bool {
+        let in_midplane = match (&self.in_valleys, valley) {
+            (Some(in_valleys), Some(valley)) => in_valleys.valleys.is_mirrored(valley),
+            _ => self.by_samples.is_none(),
+        };
+        self.placement.skew() == 0.0 && in_midplane
     }
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
@@ -154,7 +165,7 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// Returns s − δ at a valley \[mm\]; without skew that of the midplane.
+    /// Returns s − δ at a valley \[mm\]; without a valley that of the midplane.
     pub(super) fn depth_over(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         match (&mut self.in_valleys, valley) {
             (Some(in_valleys), Some(valley)) => in_valleys.depth(valley, xi),
@@ -191,7 +202,7 @@ impl<'a> Slicer<'a> {
         self.edges(xi, valley).map(|edges| Slice { eta: between(edges) })
     }
 
-    /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`.
+    /// Returns both ends of the slice at ξ; of slices from valleys, of the one that holds `valley`.
     pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[Edge; 2]> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.edges(xi, valley);
@@ -206,8 +217,8 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] next to a guess; with skew, of the slice that holds `valley`. Returns `None` without
-    /// skew over the tangent plane of a rail, from samples, and if they are not surely those of the slice that was guessed.
+    /// Returns both ends of the slice at ξ \[mm\] next to a guess; of slices from valleys, of the one that holds `valley`. Returns
+    /// `None` by the formula without skew, from samples, and if they are not surely those of the slice that was guessed.
     pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
         match &mut self.by_roots {
             Some(by_roots) => by_roots.edges_near(xi, guess),
@@ -240,8 +251,8 @@ impl<'a> Slicer<'a> {
         self.in_valleys.as_ref().map_or_else(over_plane, |in_valleys| in_valleys.raised.lanes(xi))
     }
 
-    /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, with skew that of `valley`, up to both
-    /// edges \[mm\].
+    /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, of slices from valleys that of `valley`,
+    /// up to both edges \[mm\].
     pub(super) fn has_one_valley(
         &self,
         xi: &Lanes,
@@ -301,7 +312,7 @@ impl<'a> Slicer<'a> {
         in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.spot(valley, xi).eta)
     }
 
-    /// Returns η of a valley at ξ \[mm\]; 0 without skew.
+    /// Returns η of a valley at ξ \[mm\]; 0 in the midplane.
     pub(super) fn valley(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.lowest(xi, valley);
@@ -313,13 +324,13 @@ impl<'a> Slicer<'a> {
         places.map_or(0.0, |(in_valleys, valley)| in_valleys.spot(valley, xi).eta)
     }
 
-    /// Returns η \[mm\] of the least gap over a valley at ξ; 0 without skew.
+    /// Returns η \[mm\] of the least gap over a valley at ξ; 0 in the midplane.
     ///
     /// Method: over the rail's surface the least t lies where the normal meets the valley, which is δ cos α − t below the raised point.
     pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let mut eta = self.valley(valley, xi);
         if let (Some(in_valleys), Some(level), Some(valley)) = (&self.in_valleys, &mut self.normal, valley) {
-            let steps = if in_valleys.valleys.is_turned() { TO_NEAREST } else { 0 };
+            let steps = if in_valleys.valleys.is_mirrored(valley) { 0 } else { TO_NEAREST };
             for _ in 0..steps {
                 let Some(met) = level.met_by_normal(xi, eta) else { break };
                 eta = in_valleys.valleys.spot(valley, met).eta;

@@ -14,8 +14,7 @@ const SHORTEST: f64 = 1e-7;
 /// Most stretches between two corners.
 const MOST_STRETCHES: usize = 1024;
 
-/// Number of stretches between two corners from which on the noise of edges is measured, by as many slices as a stretch takes: it may
-/// be larger than [`StretchFit::noise`].
+/// Number of stretches between two corners from which on the noise of edges is measured, by as many slices as a stretch takes.
 const NOISY: usize = 4;
 
 /// Share of the rounding up to which a coefficient is left out: a sixteenth of it, and a margin.
@@ -74,8 +73,9 @@ pub(super) struct StretchFit<F> {
     pub(super) zero: [bool; 2],
     /// Whether the edges may be square roots of the distance from either end of the band.
     pub(super) root: [bool; 2],
-    /// Rounding of the square of half the width \[mm²\], where no larger one is measured.
-    pub(super) noise: f64,
+    /// Rounding of the square of half the width \[mm²\], and the largest one that may be expected, which counts where stretches are as many
+    /// as [`NOISY`], as does a measured one.
+    pub(super) noise: [f64; 2],
 }
 
 impl<F: FnMut(&Lanes) -> [Lanes; 2]> StretchFit<F> {
@@ -86,7 +86,8 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> StretchFit<F> {
     pub(super) fn add(&mut self, corners: Interval, stretches: &mut Vec<Stretch>) {
         let shortest = SHORTEST * corners.width();
         let first = stretches.len();
-        let mut waiting = vec![(corners, self.noise)];
+        let [least, most] = self.noise;
+        let mut waiting = vec![(corners, least)];
         while let Some((xi, noise)) = waiting.pop() {
             let (plain, resolved) = self.over_width(xi, noise);
             let root = (0..2).find(|&end| !resolved && self.root[end] && xi[end] == self.band[end]);
@@ -99,8 +100,9 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> StretchFit<F> {
             } else if resolved || short || count > MOST_STRETCHES {
                 stretches.push(plain);
             } else {
-                let noise =
-                    if count > NOISY { noise.max(measured(|at| self.squares(at), xi)) } else { noise };
+                let noisy = count > NOISY;
+                let more = if noisy { measured(|at| self.squares(at), xi).max(most) } else { 0.0 };
+                let noise = noise.max(more);
                 waiting.extend(xi.halves().map(|half| (half, noise)).into_iter().rev());
             }
         }
@@ -126,8 +128,8 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> StretchFit<F> {
             (middle[k], square[k]) = (low[k] + width, width * width / far);
         }
         let rounding = rounding(largest(&middle), narrowest, noise);
-        let (square, first) = EdgeSeries::new(&square, noise / nearest);
-        let (middle, second) = EdgeSeries::new(&middle, rounding);
+        let (square, first) = EdgeSeries::new(&square, noise / nearest + moved(&x, &square));
+        let (middle, second) = EdgeSeries::new(&middle, rounding + moved(&x, &middle));
         let resolved = first && second;
         let curve = EdgeCurve::Width { zero, square, middle };
         (Stretch { xi, curve }, resolved)
@@ -137,11 +139,12 @@ impl<F: FnMut(&Lanes) -> [Lanes; 2]> StretchFit<F> {
         let length = xi.width();
         let nodes = &*NODES;
         let away = |k: usize| length * ((1.0 + nodes[k]) / 2.0).powi(2);
-        let [low, high] =
-            (self.edges)(&lanes(|k| if from == 0 { xi.low + away(k) } else { xi.high - away(k) }));
+        let x: Lanes = lanes(|k| if from == 0 { xi.low + away(k) } else { xi.high - away(k) });
+        let [low, high] = (self.edges)(&x);
         let narrowest = (0..POINTS).map(|k| (high[k] - low[k]) / 2.0).fold(f64::INFINITY, f64::min);
         let rounding = rounding(largest(&low).max(largest(&high)), narrowest, noise);
-        let [(low, first), (high, second)] = [low, high].map(|values| EdgeSeries::new(&values, rounding));
+        let series = |values: &Lanes| EdgeSeries::new(values, rounding + moved(&x, values));
+        let [(low, first), (high, second)] = [series(&low), series(&high)];
         (Stretch { xi, curve: EdgeCurve::Root { from, edges: [low, high] } }, first && second)
     }
 }
@@ -216,6 +219,14 @@ fn rounding(size: f64, narrowest: f64, noise: f64) -> f64 {
     EDGE_ROUNDINGS * f64::EPSILON * size + noise / (2.0 * narrowest.max(noise.sqrt()))
 }
 
+/// Returns how far a coefficient may move if values at 16 places \[mm\] move by the rounding of the places.
+fn moved(x: &Lanes, values: &Lanes) -> f64 {
+    let slopes = (1..POINTS).map(|k| ((values[k] - values[k - 1]) / (x[k] - x[k - 1])).abs());
+    // Places that rounding makes one say nothing.
+    let sum: f64 = slopes.filter(|slope| slope.is_finite()).sum();
+    2.0 / POINTS as f64 * f64::EPSILON * largest(x) * sum
+}
+
 /// Returns the product of the distances from the ends with a zero width, and its derivative.
 #[inline(always)]
 fn distances(Interval { low: a, high: b }: Interval, zero: [bool; 2], xi: f64) -> [f64; 2] {
@@ -274,7 +285,7 @@ mod tests {
             let both = xi.map(&mut edges);
             [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
         };
-        StretchFit { edges, band, zero, root, noise: 8.0 * f64::EPSILON }.add(band, &mut stretches);
+        StretchFit { edges, band, zero, root, noise: [8.0 * f64::EPSILON; 2] }.add(band, &mut stretches);
         stretches
     }
 
@@ -312,6 +323,15 @@ mod tests {
                 assert!((low - edges(x)[0]).abs() < 1e-14 && (high - edges(x)[1]).abs() < 1e-14, "{x}");
             }
         }
+    }
+
+    /// Where an edge is steep, it moves by the rounding of ξ.
+    #[test]
+    fn steep_edges_are_one_stretch() {
+        let band = Interval::new(20.0, 20.000_001);
+        assert_eq!(fitted(|x| [-9.0, 640.0 * (x - 20.0)], band, [false; 2], [false; 2]).len(), 1);
+        let root = |x: f64| [-9.0, ((x - 20.0) / 1e-6).sqrt()];
+        assert_eq!(fitted(root, band, [false; 2], [true, false]).len(), 1);
     }
 
     #[test]

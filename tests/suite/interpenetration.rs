@@ -165,7 +165,8 @@ fn loops_run_counter_clockwise_along_s_equal_delta() {
             let twins = c.boundary.iter().zip(c.boundary.iter().cycle().skip(1)).filter(|(p, q)| p == q);
             assert_eq!(twins.count(), 0, "{name}: repeated points");
             let [a, b] = c.xi.ends();
-            for &[xi, eta] in &c.boundary {
+            let next = c.boundary.iter().cycle().skip(1);
+            for (&[xi, eta], &[xi_next, eta_next]) in c.boundary.iter().zip(next) {
                 assert!(c.extent().contains(xi, eta), "{name}: ({xi}, {eta})");
                 // Closed by a body's end or step: s < δ, and just outside there is no surface, or s has jumped.
                 let centre = centre_at(c, xi);
@@ -175,9 +176,11 @@ fn loops_run_counter_clockwise_along_s_equal_delta() {
                 let smooth = 1e-9 * (across * (eta - centre)).abs();
                 let jump = beyond >= delta && beyond - evaluator.separation(xi, eta) > 10.0 * smooth;
                 let side = end || beyond.is_nan() || jump;
-                // A point on the very end may round off it.
-                let s = evaluator
-                    .separation(xi, if side { centre + (eta - centre) * (1.0 - 1e-12) } else { eta });
+                // A point on the very end may round off it, and farther where the end is steep: ξ has a rounding, too.
+                let steep = if xi_next == xi { 0.0 } else { ((eta_next - eta) / (xi_next - xi)).abs() };
+                let off = 1e-12 * (eta - centre).abs() + f64::EPSILON * xi.abs() * steep;
+                let inside = if eta > centre { (eta - off).max(centre) } else { (eta + off).min(centre) };
+                let s = evaluator.separation(xi, if side { inside } else { eta });
                 // What a rounding of ξ does to s: the wheel may be steep there.
                 let rounding = 16.0 * f64::EPSILON * (slope.abs() + 1.0) * (xi.abs() + 1.0);
                 assert!(

@@ -14,6 +14,7 @@ use wheelrail::patch::{End, Patch, Window};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Arc, Half, Profile, Section, Side, standards};
 use wheelrail::scene;
+use wheelrail::search::{Pose, first_touch};
 use wheelrail::separation::Evaluator;
 
 /// Points of a line of constant ξ at which s is looked at.
@@ -25,6 +26,9 @@ const MARGIN: f64 = 0.05;
 
 /// What is looked at \[mm\].
 const NEAR: Window = Window { xi: Interval::symmetric(8.0), eta: Interval::symmetric(15.0) };
+
+/// No patch of simple profiles may take longer, on a loaded machine; they take a millisecond.
+const SOON: Duration = Duration::from_millis(200);
 
 /// No scene may take longer, on a loaded machine.
 const LONGEST: Duration = Duration::from_secs(20);
@@ -159,7 +163,7 @@ fn most_slices(patch: &Patch, xi: Interval) -> usize {
 
 #[test]
 fn the_end_of_a_wheel_beside_the_midplane() {
-    for yaw in [-0.05, -0.01, 0.01, 0.05] {
+    for yaw in [-0.05, -0.01, 0.0, 0.01, 0.05] {
         let left = check(&format!("left end, yaw {yaw}"), &at_the_end(-0.05, 20.0, yaw, None), 0.2);
         assert_eq!(left.components.len(), 1, "yaw {yaw}");
         check(&format!("right end, yaw {yaw}"), &at_the_end(-20.0, 0.05, yaw, None), 0.2);
@@ -185,20 +189,117 @@ fn the_end_of_a_wheel_on_a_roller() {
 /// Lines of constant ξ that touch the circle of the wheel's end divide: two prongs, of one component with one loop.
 #[test]
 fn a_component_goes_on_on_both_sides_of_the_wheel_s_end() {
-    for yaw in [-1e-3, 1e-3] {
-        let placement = at_the_end(-20.0, 0.05, yaw, None);
-        let patch = check(&format!("yaw {yaw}"), &placement, 0.2);
-        let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
-        assert_eq!((c.ends, c.holes.len()), ([End::Tip; 2], 0), "yaw {yaw}");
-        assert_eq!(most_slices(&patch, c.xi), 2, "yaw {yaw}");
+    for yaw in [-1e-3, -1e-4, 0.0, 1e-9, 1e-7, 1e-3] {
+        // The window cuts the longer prongs.
+        for (end, approach, last) in [(0.05, 0.2, End::Window), (0.0, 0.1, End::Tip)] {
+            let placement = at_the_end(-20.0, end, yaw, None);
+            let patch = check(&format!("end at {end}, yaw {yaw}"), &placement, approach);
+            let [c] = patch.components.as_slice() else { panic!("{} components", patch.components.len()) };
+            assert_eq!((c.ends, c.holes.len()), ([End::Tip, last], 0), "end at {end}, yaw {yaw}");
+            assert_eq!(most_slices(&patch, c.xi), 2, "end at {end}, yaw {yaw}");
+        }
     }
 }
 
-/// On a roller, with and without yaw, these lines are sampled.
+/// The smallest yaws change nothing, and the prongs of a nearly level end are as narrow as a micrometre.
+#[test]
+fn the_patch_without_yaw_is_that_of_the_smallest_yaw() {
+    let rail =
+        Arc::about([0.0, -300.0], 300.0, Half::Upper, [-65.0, 65.0]).and_then(profile).expect("a crown");
+    for slope in [0.0, 0.003, -0.003, 0.02, 0.2] {
+        let cone = Arc::line([-30.0, -30.0 * slope], [7.0, 7.0 * slope]).and_then(profile).expect("a cone");
+        let pair = Pair::new(rail.clone(), cone, 430.0).expect("a pair");
+        let patch = |yaw: f64| {
+            let foot = -300.0 * f64::sin(slope.atan());
+            let placement = pair.placed(foot, 0.0, yaw).expect("a placement");
+            let start = Instant::now();
+            let patches = [Patch::new, Patch::over_rail].map(|of| of(&placement, 0.3, &Window::UNBOUNDED));
+            assert!(start.elapsed() < SOON, "slope {slope}, yaw {yaw}: {:?}", start.elapsed());
+            patches.map(|patch| (patch.components.len(), patch.area()))
+        };
+        let without = patch(0.0);
+        for yaw in [1e-14, -1e-12, 1e-9] {
+            for ((parts, area), (expected, level)) in patch(yaw).into_iter().zip(without) {
+                assert_eq!(parts, expected, "slope {slope}, yaw {yaw}");
+                assert!((area / level - 1.0).abs() < 1e-12, "slope {slope}, yaw {yaw}: {area}, {level}");
+            }
+        }
+    }
+}
+
+/// A profile of lines through points.
+fn chain(points: &[[f64; 2]]) -> Profile {
+    let line = |pair: &[[f64; 2]]| Arc::line(pair[0], pair[1]).expect("a line");
+    let segments = points.windows(2).map(|pair| wheelrail::profile::Segment::arc(line(pair)));
+    Profile::new("chain", "test", segments.collect()).expect("a profile")
+}
+
+/// At a hollow kink the normals of the rail's surface cross, so that the wheel is met again behind it.
+#[test]
+fn a_kink_of_the_rail_parts_the_patch_over_its_surface() {
+    let rail = chain(&[[-20.0, -1.0], [0.0, 0.0], [0.54, 0.0], [3.0, 0.31]]);
+    let pair = Pair::new(rail, chain(&[[-10.0, 1.0], [0.0, 0.0], [10.0, 5.71]]), 460.0).expect("a pair");
+    for yaw in [0.0, 0.01] {
+        let placement = Pose::new(0.1, yaw, 0.0).and_then(|pose| first_touch(&pair, &pose)).expect("a touch");
+        let patch = check(&format!("yaw {yaw}"), &placement, 0.24);
+        let over_rail = Patch::over_rail(&placement, 0.24, &NEAR);
+        assert_eq!([patch, over_rail].map(|patch| patch.components.len()), [1, 2], "yaw {yaw}");
+    }
+}
+
+/// The areas of a patch in windows side by side are that of the whole.
+#[test]
+fn windows_add_up() {
+    let crown =
+        Arc::about([0.0, -300.0], 300.0, Half::Upper, [-45.0, 45.0]).and_then(profile).expect("a crown");
+    let roof = chain(&[[-30.0, -1.0], [0.0, 0.0], [30.0, -0.3]]);
+    let cone = |[from, to]: [f64; 2], slope: f64| chain(&[[from, from * slope], [to, to * slope]]);
+    let scenes = [
+        (
+            "an end that leaves the patch next to its tip",
+            crown.clone(),
+            cone([-30.0, 7.0], -0.003),
+            [0.9, 0.0],
+        ),
+        ("a prong of a micrometre", crown, cone([-30.0, 7.0], 0.003), [-0.9, 0.0]),
+        ("a contact at a kink of the rail", roof, cone([-30.0, 30.0], 0.005), [0.0, 0.0]),
+        (
+            "a wheel that ends beside the rail",
+            cone([0.0, 30.0], -0.03),
+            cone([-0.016, 9.0], -0.01),
+            [0.0, 0.0],
+        ),
+    ];
+    for (name, rail, wheel, [rail_x, wheel_x]) in scenes {
+        let pair = Pair::new(rail, wheel, 430.0).expect("a pair");
+        for yaw in [0.0, 1e-12, 1e-9, 1e-4, 0.01] {
+            let pose = Pose::new(rail_x - wheel_x, yaw, 0.0).expect("a pose");
+            let placement = first_touch(&pair, &pose).expect("a touch");
+            for of in [Patch::new, Patch::over_rail] {
+                let whole = of(&placement, 0.3, &Window::UNBOUNDED);
+                let Some(extent) = whole.extent() else { continue };
+                let cut = |k: usize| match k {
+                    0 => f64::NEG_INFINITY,
+                    13 => f64::INFINITY,
+                    k => extent.xi.step(k, 13),
+                };
+                let window = |k: usize| Window { xi: Interval::new(cut(k), cut(k + 1)), eta: Interval::ALL };
+                let parts: f64 = (0..13).map(|k| of(&placement, 0.3, &window(k)).area()).sum();
+                assert!(
+                    (parts / whole.area() - 1.0).abs() < 2e-12,
+                    "{name}, yaw {yaw}: {parts}, {}",
+                    whole.area()
+                );
+            }
+        }
+    }
+}
+
+/// On a roller these lines are sampled.
 #[test]
 fn both_prongs_beyond_a_hollow_end_are_found() {
-    for yaw in [0.0, 1e-3, -0.01] {
-        let (name, roller) = (format!("on a roller, yaw {yaw}"), Some(350.0));
+    for (yaw, roller) in [0.0, 1e-3, -0.01].into_iter().flat_map(|yaw| [(yaw, None), (yaw, Some(350.0))]) {
+        let name = format!("roller {roller:?}, yaw {yaw}");
         let patch = check(&name, &at_the_end(-20.0, 0.05, yaw, roller), 0.2);
         let [c] = patch.components.as_slice() else {
             panic!("{name}: {} components", patch.components.len())

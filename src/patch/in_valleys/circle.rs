@@ -192,9 +192,10 @@ impl<'a> Turned<'a> {
         circle.height + circle.radius * 2.0 * t * t / (1.0 + t * t) * self.tilt.re
     }
 
-    /// Returns the unit vector \[dξ, dζ\] along any circle at t, towards larger t.
+    /// Returns the unit vector \[dξ, dζ\] along any circle at t, towards larger t; without skew away from the midplane.
     pub(super) fn direction(&self, t: f64) -> Vector2<f64> {
-        let (sin, cos) = (2.0 * t, 1.0 - t * t);
+        // Without skew both halves of a circle lie on one straight line of ξ and ζ, which ends at t = 0.
+        let (sin, cos) = if self.skew.im == 0.0 { (1.0, 0.0) } else { (2.0 * t, 1.0 - t * t) };
         Vector2::new(self.tilt.im * self.skew.re * sin - self.skew.im * cos, sin * self.tilt.re).normalize()
     }
 

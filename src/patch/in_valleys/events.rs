@@ -6,6 +6,9 @@ use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::band::Turn;
 use crate::patch::outline::Outline;
 
+/// Share of the way from an event to a place outside the patch at which is seen whether a crease itself goes on within the patch.
+const BEYOND: f64 = 1e-6;
+
 /// Values of ξ at which the intervals of η may change \[mm\], in no order.
 #[derive(Debug, Default)]
 pub(in crate::patch) struct Events {
@@ -130,8 +133,10 @@ fn passes_beside_window(outline: &mut Outline<'_>, crease: usize, over: Interval
         if here != before {
             let (on, off) = if before { (pair[0], pair[1]) } else { (pair[1], pair[0]) };
             let xi = last_where(|xi| outline.depth(Some(crease), xi) < 0.0, on, off);
+            // Where the crease leaves the window, rounding decides on which side of its edge it is seen.
+            let goes_on = crease_depth(outline, crease, xi + BEYOND * (off - xi)) < 0.0;
             let seen = outline.window.eta.contains(outline.slicer.valley(Some(crease), xi));
-            (if seen { &mut events.tips } else { &mut events.cuts }).push(xi);
+            (if seen && !goes_on { &mut events.tips } else { &mut events.cuts }).push(xi);
             events.xi.push(xi);
         }
         before = here;

@@ -1,11 +1,11 @@
-//! Finds the bands of a patch under a skewed wheel, or over the rail's surface, where a line of constant ξ or σ may meet the patch in
-//! several intervals of η.
+//! Finds the bands of a patch under a skewed wheel, beyond the end of a tilted one, or over the rail's surface, where a line of constant ξ
+//! or σ may meet the patch in several intervals of η.
 //!
 //! Every interval holds a valley of the wheel. An event is a ξ at which a valley or ridge begins, ends or passes s = δ, or
-//! at which the rail steps. Between two events the intervals persist; at an event they continue, divide or join.
+//! at which the rail or its raised curve steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
-use super::slicer::between;
+use super::slicer::{NEAR_GUESS, between};
 use crate::numerics::interval::Interval;
 use crate::patch::band::{Band, Turn, steps};
 use crate::patch::outline::{End, Outline};
@@ -60,10 +60,11 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> (Vec<Band>, Vec<Turn
     let turns = std::mem::take(&mut events.turns);
     let placement = outline.slicer.placement();
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
-    let mut rail_steps = Vec::new();
-    if !outline.slicer.is_over_rail() {
-        rail_steps.extend(steps(&placement.rail().section, over, extent));
-    }
+    let raised = outline.slicer.in_valleys.as_ref().map(|in_valleys| &in_valleys.raised);
+    let rail_steps = match raised.filter(|raised| raised.surface.is_some()) {
+        Some(raised) => raised.jumps(over),
+        None => steps(&placement.rail().section, over, extent).collect(),
+    };
     let mut all = [&events.xi[..], &rail_steps, &over.ends()].concat();
     all.sort_by(f64::total_cmp);
     all.dedup();
@@ -204,11 +205,11 @@ impl LaneWalk<'_, '_> {
                 let (first, last) = (parts[0], parts[parts.len() - 1]);
                 let group = |part: usize| if whole == 0 { &groups[part] } else { &lanes[part].group };
                 let (low, high) = (group(first).clone(), group(last).clone());
-                let mut cuts = vec![self.outer(&low, xi, 0).unwrap_or(interval(first).low)];
+                let mut cuts = vec![self.outer(&low, xi, interval(first), 0)];
                 for pair in parts.windows(2) {
                     cuts.push(self.meeting_point(xi, [interval(pair[0]).high, interval(pair[1]).low]));
                 }
-                cuts.push(self.outer(&high, xi, 1).unwrap_or(interval(last).high));
+                cuts.push(self.outer(&high, xi, interval(last), 1));
                 sides.push((whole, k, Interval::new(cuts[0], cuts[parts.len()])));
                 let side = |cut: &[f64]| Interval::new(cut[0], cut[1]);
                 sides.extend(parts.iter().zip(cuts.windows(2)).map(|(&p, cut)| (1 - whole, p, side(cut))));
@@ -217,9 +218,14 @@ impl LaneWalk<'_, '_> {
         sides
     }
 
-    /// Returns the lower (0) or upper (1) edge of a group at ξ \[mm\].
-    fn outer(&mut self, group: &ValleyGroup, xi: f64, side: usize) -> Option<f64> {
-        self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta)
+    /// Returns the lower (0) or upper (1) edge of a group at ξ \[mm\], near that of its interval next to ξ.
+    fn outer(&mut self, group: &ValleyGroup, xi: f64, beside: Interval, side: usize) -> f64 {
+        let near = |eta: &f64| (eta - beside[side]).abs() <= NEAR_GUESS * beside.width();
+        let found = self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta).filter(near);
+        // Where the line only touches the circle of an end, rounding may end the surface there.
+        let again = || self.outline.slicer.edge_near(xi, beside.ends(), side);
+        let window = self.outline.window.eta;
+        found.or_else(again).map_or(beside[side], |eta| window.nearest(eta))
     }
 
     /// Returns η at which two intervals meet: on a ridge or the circle of an end between them, or else half-way.

@@ -71,6 +71,12 @@ impl ValleyPath {
     /// there on.
     fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
         let circle = self.ends[end];
+        if turned.skew.im == 0.0 {
+            // Lines that leave the wheel at the midplane enter it again ahead of C and behind.
+            let both = turned.is_hollow(end).then(|| circle_legs(turned, circle));
+            self.apart.extend(both.into_iter().flatten());
+            return;
+        }
         // The outward tangents turn the place against the skew on the right end, and with it on the left end.
         let side = if end == 0 { turned.skew.im } else { -turned.skew.im };
         let (mut limit, touching) = (FARTHEST.copysign(side), turned.touching());
@@ -165,11 +171,10 @@ fn leg(turned: &Turned<'_>, circle: Circle, range: [f64; 2]) -> Leg {
 }
 
 /// Returns the whole circle of a profile point, as legs of ascending ξ.
-pub(super) fn circle_legs(turned: &Turned<'_>, circle: Circle) -> Vec<Leg> {
+pub(super) fn circle_legs(turned: &Turned<'_>, circle: Circle) -> impl Iterator<Item = Leg> {
     let touching = turned.touching().clamp(-FARTHEST, FARTHEST);
     let halves = [[-FARTHEST, touching], [touching, FARTHEST]].into_iter().filter(|[from, to]| from < to);
     halves
-        .map(|range| leg(turned, circle, range))
+        .map(move |range| leg(turned, circle, range))
         .map(|leg| if leg.xi[0] <= leg.xi[1] { leg } else { leg.reversed() })
-        .collect()
 }

@@ -1,4 +1,4 @@
-//! Finds the slices under a skewed wheel, and over the rail's surface, from a valley outwards to s = δ.
+//! Finds the slices under a skewed wheel, beyond the end of a tilted one, and over the rail's surface, from a valley outwards to s = δ.
 //!
 //! Along a line of constant ξ, s is monotone between neighbouring special places: the lowest and highest points of the
 //! wheel, and the ends and steps of its surface. All these places are known, and the search moves outwards from one to the
@@ -166,8 +166,11 @@ impl<'a> InValleys<'a> {
         let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
         let upper = self.outward(xi, spot.eta, reach, &mut stops);
         let mirrored = Edge { eta: -upper.eta, ..upper };
-        let lower =
-            if self.valleys.is_turned() { self.outward(xi, spot.eta, -reach, &mut stops) } else { mirrored };
+        let lower = if self.valleys.is_mirrored(valley) {
+            mirrored
+        } else {
+            self.outward(xi, spot.eta, -reach, &mut stops)
+        };
         self.stops = stops;
         Some([lower, upper])
     }
@@ -182,8 +185,8 @@ impl<'a> InValleys<'a> {
     }
 
     /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, s rises
-    /// outwards there, and no second valley or ridge is at ξ in the guess or next to it: up to there s rises on either side of the
-    /// valley.
+    /// outwards there, and no second valley or ridge and no end of the surface is at ξ in the guess or next to it: up to there s rises on
+    /// either side of the valley.
     pub(in crate::patch) fn edges_near(
         &mut self,
         (xi, valley): (f64, usize),
@@ -191,13 +194,11 @@ impl<'a> InValleys<'a> {
     ) -> Option<[f64; 2]> {
         let [low, high] = guess;
         let around = Interval::new(low, high).grown(NEAR_GUESS * (high - low));
-        let alone = self.over(xi).nth(1).is_none()
-            || self.valleys.is_alone_within(valley, self.raised.xi(xi), around);
-        if !alone {
+        if !self.valleys.is_alone_within(valley, self.raised.xi(xi), around) {
             return None;
         }
         let upper = self.edge_near(xi, guess, 1)?;
-        Some([if self.valleys.is_turned() { self.edge_near(xi, guess, 0)? } else { -upper }, upper])
+        Some([if self.valleys.is_mirrored(valley) { -upper } else { self.edge_near(xi, guess, 0)? }, upper])
     }
 
     /// Returns one end of a slice by Newton's steps from a guess of both. `None` as for [`newton_from`].
@@ -295,6 +296,9 @@ impl<'a> InValleys<'a> {
                 if self.raised.gap(xi, place).is_nan() { off = place } else { on = place }
             }
         }
-        last_where(|eta| !self.raised.gap(xi, eta).is_nan(), on, off)
+        let end = last_where(|eta| !self.raised.gap(xi, eta).is_nan(), on, off);
+        // Less is what the squares of numbers near 0 lose.
+        let rounding = f64::EPSILON * self.placement.rolling_radius();
+        if (end - on).abs() < rounding { on } else { end }
     }
 }

@@ -81,9 +81,15 @@ impl<'a> Valleys<'a> {
         Self { turned, creases, rims }
     }
 
-    /// Returns whether the wheel is skewed. Otherwise its valleys are the lower sides of its profile, at η = 0.
-    pub(crate) fn is_turned(&self) -> bool {
+    /// Returns whether the wheel is skewed.
+    fn is_turned(&self) -> bool {
         self.turned.skew.im != 0.0
+    }
+
+    /// Returns whether a valley lies in the midplane, about which the wheel is symmetric: without skew, unless it is on the circle of an
+    /// end.
+    pub(crate) fn is_mirrored(&self, valley: usize) -> bool {
+        !self.is_turned() && self.creases[valley].legs[0].piece.is_some()
     }
 
     /// Returns the place of a valley or ridge at ξ, which must lie inside its interval.
@@ -212,10 +218,11 @@ impl<'a> Valleys<'a> {
         only && met.next().is_none()
     }
 
-    /// Returns whether a valley, and nothing else, lies at ξ in an interval of η \[mm\]: no other valley or ridge, and no end or step of
-    /// the surface.
+    /// Returns whether nothing else than a valley lies at ξ in an interval of η \[mm\] around it: no other valley or ridge, and no end or
+    /// step of the surface.
     pub(crate) fn is_alone_within(&self, valley: usize, xi: f64, eta: Interval) -> bool {
-        let alone = self.over(xi).all(|k| (k == valley) == eta.contains(self.spot(k, xi).eta));
+        let only = self.over(xi).nth(1).is_none();
+        let alone = only || self.over(xi).all(|k| (k == valley) == eta.contains(self.spot(k, xi).eta));
         alone && !self.rims(xi).any(|rim| eta.contains(rim))
     }
 
@@ -224,26 +231,42 @@ impl<'a> Valleys<'a> {
         self.crossings(xi).map(|(place, _)| place.eta)
     }
 
-    /// Calls `visit` for the circle of every joint and end of the wheel that may meet a box of the ξ–η plane. The arguments
-    /// are \[ξ, ζ\] as a function of t along the circle, and the range of t.
-    pub(crate) fn circles(
+    /// Calls `visit` as [`Self::visit_rims`] does, for the circle of every joint and end of the wheel.
+    pub(crate) fn visit_joints(
         &self,
-        xi: Interval,
-        eta: Interval,
+        (xi, eta): (Interval, Interval),
         mut visit: impl FnMut(&dyn Fn(f64) -> [f64; 2], [f64; 2]),
     ) {
-        let turned = &self.turned;
-        let pieces = &turned.section.pieces;
+        let pieces = &self.turned.section.pieces;
         for (k, piece) in pieces.iter().enumerate() {
             let joined = pieces.get(k + 1).is_some_and(|next| next.xi.low == piece.xi.high);
             for p in piece.xi.ends().into_iter().take(if joined { 1 } else { 2 }) {
-                let circle = turned.circle(k, p);
-                let range = turned.turns(&circle, eta);
-                let places = [range[0], range[1], turned.touching().clamp(range[0], range[1])];
-                if Interval::around(places.map(|t| turned.place(&circle, t).xi)).meets(xi) {
-                    visit(&|t| [turned.place(&circle, t).xi, turned.height(&circle, t)], range);
-                }
+                self.visit_circle(&self.turned.circle(k, p), (xi, eta), &mut visit);
             }
+        }
+    }
+
+    /// Calls `visit` for the circle of every end and step of the wheel's surface that may meet a box of the ξ–η plane. The arguments
+    /// are \[ξ, ζ\] as a function of t along the circle, and the range of t.
+    pub(crate) fn visit_rims(
+        &self,
+        within: (Interval, Interval),
+        mut visit: impl FnMut(&dyn Fn(f64) -> [f64; 2], [f64; 2]),
+    ) {
+        self.rims.iter().for_each(|rim| self.visit_circle(rim, within, &mut visit));
+    }
+
+    fn visit_circle(
+        &self,
+        circle: &Circle,
+        (xi, eta): (Interval, Interval),
+        visit: &mut impl FnMut(&dyn Fn(f64) -> [f64; 2], [f64; 2]),
+    ) {
+        let turned = &self.turned;
+        let range = turned.turns(circle, eta);
+        let places = [range[0], range[1], turned.touching().clamp(range[0], range[1])];
+        if Interval::around(places.map(|t| turned.place(circle, t).xi)).meets(xi) {
+            visit(&|t| [turned.place(circle, t).xi, turned.height(circle, t)], range);
         }
     }
 
