@@ -128,8 +128,7 @@ impl Band {
         // Over the rail's surface the arc length stands for both coordinates.
         let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
         let off = |body: &&&Body| !self.xi.ends().iter().all(|xi| body.section.on_contact_segment(*xi, 0.0));
-        let far = |body: &&Body| body.section.frame.x.abs().max(body.section.frame.z.abs());
-        let own = bodies.iter().filter(off).map(far).fold(0.0, f64::max);
+        let own = bodies.iter().filter(off).map(|body| body.profile().extent()).fold(0.0, f64::max);
         let size = self.xi.map(|xi| height(xi) + xi.abs());
         let middle = self.xi.middle();
         let valley = self.valley(middle);

@@ -104,6 +104,8 @@ impl Patch {
     /// only where it is shallower than 1e-12 mm, beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a
     /// hollow kink of a skewed wheel, where it is shallower than 1e-4 mm.
     ///
+    /// Without skew on a rail, what lies beyond an end of the wheel that is in the rail by more than δ is left out: there the bodies overlap.
+    ///
     /// The patch is found from samples where a body varies, and on a roller where a hollow kink gives the lines two lowest places that may
     /// differ by more than that, or where lines leave a tilted body over its end within the patch and enter it again.
     /// Then a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to

@@ -99,13 +99,15 @@ fn roots_on_circle(
     let mut roots = Vec::new();
     let mut before = depth(from);
     for k in 1..=CIRCLE_INTERVALS {
-        let (mut ends, here) = ([at(k - 1), at(k)], depth(at(k)));
+        let here = depth(at(k));
+        let (mut ends, mut depths) = ([at(k - 1), at(k)], [before, here]);
         // Beside the rail there is no depth.
-        if let Some(off) = [before, here].iter().position(|depth| depth.is_nan()) {
+        if before.is_nan() != here.is_nan() {
+            let off = usize::from(here.is_nan());
             ends[off] = last_where(|t| !depth(t).is_nan(), ends[1 - off], ends[off]);
+            depths[off] = depth(ends[off]);
         }
-        let [first, last] = ends.map(&mut depth);
-        if first * last < 0.0 {
+        if depths[0] * depths[1] < 0.0 {
             roots.extend(bracketed(&mut depth, ends[0], ends[1]).map(|t| place(t)[0]));
         }
         before = here;

@@ -53,7 +53,7 @@ fn has_hollow_end(placement: &Placement, under: &Placement, approach: f64) -> bo
 }
 
 /// Returns whether lines of constant ξ may leave a wheel without skew on a rail over an end or step of its profile, and meet the patch at
-/// approach δ \[mm\] where they enter it again.
+/// approach δ \[mm\] where they enter it again. An end that lies in the rail by more than δ does not count.
 ///
 /// Method: the circle of a profile point lies on a straight line of ξ and ζ, which is compared with the highest point of every piece of the
 /// rail.
@@ -63,6 +63,10 @@ pub(super) fn lines_reenter(placement: &Placement, approach: f64) -> bool {
     let rise = turned.tilt.re / turned.tilt.im.abs();
     let meets_rail = |end: usize, index: usize| {
         let (piece, outward) = (&wheel.pieces[index], [-1.0, 1.0][end]);
+        let overlap = rail.height(piece.xi[end]) - piece.heights[end];
+        if overlap > approach {
+            return false;
+        }
         rail.pieces.iter().any(|below| {
             let away = below.xi.map(|xi| (xi - piece.xi[end]) * outward);
             let lowest = piece.heights[end] + away.low.min(away.high).max(0.0) * rise;

@@ -207,7 +207,8 @@ impl<'a> Slicer<'a> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.edges(xi, valley);
         }
-        if let (Some(in_valleys), Some(valley)) = (&mut self.in_valleys, valley) {
+        let by_formula = self.normal.is_none() && self.is_mirrored(valley);
+        if let (Some(in_valleys), Some(valley), false) = (&mut self.in_valleys, valley, by_formula) {
             return in_valleys.edges(xi, valley);
         }
         if let Some(by_roots) = &mut self.by_roots {

@@ -71,6 +71,11 @@ impl<'a> Turned<'a> {
         }
     }
 
+    /// Returns whether the wheel is skewed.
+    pub(super) fn is_skewed(&self) -> bool {
+        self.skew.im != 0.0
+    }
+
     /// Returns the circle of the profile point at abscissa `p` of a piece.
     pub(super) fn circle(&self, piece: usize, p: f64) -> Circle {
         self.circle_with(p, self.section.branches[self.section.pieces[piece].branch].height(p))
@@ -195,7 +200,7 @@ impl<'a> Turned<'a> {
     /// Returns the unit vector \[dξ, dζ\] along any circle at t, towards larger t; without skew away from the midplane.
     pub(super) fn direction(&self, t: f64) -> Vector2<f64> {
         // Without skew both halves of a circle lie on one straight line of ξ and ζ, which ends at t = 0.
-        let (sin, cos) = if self.skew.im == 0.0 { (1.0, 0.0) } else { (2.0 * t, 1.0 - t * t) };
+        let (sin, cos) = if self.is_skewed() { (2.0 * t, 1.0 - t * t) } else { (1.0, 0.0) };
         Vector2::new(self.tilt.im * self.skew.re * sin - self.skew.im * cos, sin * self.tilt.re).normalize()
     }
 

@@ -71,7 +71,7 @@ impl ValleyPath {
     /// there on.
     fn end(&mut self, turned: &Turned<'_>, end: usize, t: f64) {
         let circle = self.ends[end];
-        if turned.skew.im == 0.0 {
+        if !turned.is_skewed() {
             // Lines that leave the wheel at the midplane enter it again ahead of C and behind.
             let both = turned.is_hollow(end).then(|| circle_legs(turned, circle));
             self.apart.extend(both.into_iter().flatten());

@@ -81,15 +81,10 @@ impl<'a> Valleys<'a> {
         Self { turned, creases, rims }
     }
 
-    /// Returns whether the wheel is skewed.
-    fn is_turned(&self) -> bool {
-        self.turned.skew.im != 0.0
-    }
-
     /// Returns whether a valley lies in the midplane, about which the wheel is symmetric: without skew, unless it is on the circle of an
     /// end.
     pub(crate) fn is_mirrored(&self, valley: usize) -> bool {
-        !self.is_turned() && self.creases[valley].legs[0].piece.is_some()
+        !self.turned.is_skewed() && self.creases[valley].legs[0].piece.is_some()
     }
 
     /// Returns the place of a valley or ridge at ξ, which must lie inside its interval.
@@ -97,7 +92,7 @@ impl<'a> Valleys<'a> {
         let legs = &self.creases[crease].legs;
         let leg = &legs[legs.partition_point(|leg| leg.xi[1] < xi).min(legs.len() - 1)];
         let (circle, t) = match leg.piece {
-            Some(piece) if !self.is_turned() => {
+            Some(piece) if !self.turned.is_skewed() => {
                 (self.turned.circle(piece, self.abscissa(piece, leg.range, xi)), 0.0)
             }
             Some(piece) => self.turned.parallel(piece, self.abscissa(piece, leg.range, xi)),
@@ -180,7 +175,7 @@ impl<'a> Valleys<'a> {
             if miss.abs() <= ROOT_SHARE * xi.abs() { 0.0 } else { miss }
         };
         let range = Interval::between(from, to);
-        if !self.is_turned() {
+        if !self.turned.is_skewed() {
             return range.nearest(xi);
         }
         // The place is C itself. A bracket with an end at 0 would be halved a thousand times.
