@@ -119,16 +119,18 @@ impl Band {
         self.stretches = stretches;
     }
 
-    /// Returns the rounding of the square of half the width \[mm²\]: the rounding of s times the square over the depth, both in the
-    /// middle of the band. Of samples it is a share of that square. The second one is that where the band is off the segments through C,
-    /// and heights have the rounding of the profiles' own coordinates.
+    /// Returns the least and the largest rounding of the square of half the width \[mm²\] that may be expected: the rounding of s times the
+    /// square over the depth, both in the middle of the band. s has at least the rounding of ξ and ζ, and off the segments through C up to
+    /// that of the profiles' own coordinates. Of samples both are a share of that square.
     fn noise(&self, outline: &mut Outline<'_>) -> [f64; 2] {
         let bodies = [outline.slicer.placement().rail(), outline.slicer.placement().wheel()];
         let rail = &bodies[0].section;
         // Over the rail's surface the arc length stands for both coordinates.
         let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
-        let off = |body: &&&Body| !self.xi.ends().iter().all(|xi| body.section.on_contact_segment(*xi, 0.0));
-        let own = bodies.iter().filter(off).map(|body| body.profile().extent()).fold(0.0, f64::max);
+        let through_c =
+            |body: &Body| self.xi.ends().iter().all(|xi| body.section.on_contact_segment(*xi, 0.0));
+        let off = bodies.into_iter().filter(|body| !through_c(body));
+        let own = off.map(|body| body.profile().extent()).fold(0.0, f64::max);
         let size = self.xi.map(|xi| height(xi) + xi.abs());
         let middle = self.xi.middle();
         let valley = self.valley(middle);

@@ -17,8 +17,7 @@ use crate::separation::{Relief, ReliefPoint};
 /// Rounding of the direction of the raised curve.
 const DIRECTION_NOISE: f64 = 1e-13;
 
-/// Angle \[rad\] of a joint of the rail up to which the raised curve goes on over it. What a larger one tears apart is less than a
-/// millionth of δ.
+/// Largest kink \[rad\] of the rail over which the raised curve counts as continuous: there it jumps by at most a millionth of δ.
 const KINK: f64 = 1e-6;
 
 /// The raised profile of an extruded rail under a wheel of revolution.
@@ -226,7 +225,8 @@ impl<'a> Raised<'a> {
         piece.sigma.parts(turns).collect()
     }
 
-    /// Returns the σ inside a range \[mm\] at which the raised curve jumps, at kinks of the rail.
+    /// Returns the σ inside a range \[mm\], ascending, at which the raised curve jumps: at kinks of the rail, where its normal turns at
+    /// once.
     pub(super) fn jumps(&self, over: Interval) -> Vec<f64> {
         let joints = self.surface.as_ref().map(RailArcLength::joints).unwrap_or_default();
         let leaps = |sigma: f64| {

@@ -73,8 +73,8 @@ pub(super) struct StretchFit<F> {
     pub(super) zero: [bool; 2],
     /// Whether the edges may be square roots of the distance from either end of the band.
     pub(super) root: [bool; 2],
-    /// Rounding of the square of half the width \[mm²\], and the largest one that may be expected, which counts where stretches are as many
-    /// as [`NOISY`], as does a measured one.
+    /// The least and the largest rounding of the square of half the width \[mm²\] that may be expected. The largest, or what is measured if
+    /// that is more, counts where there are more stretches than [`NOISY`].
     pub(super) noise: [f64; 2],
 }
 
@@ -219,7 +219,7 @@ fn rounding(size: f64, narrowest: f64, noise: f64) -> f64 {
     EDGE_ROUNDINGS * f64::EPSILON * size + noise / (2.0 * narrowest.max(noise.sqrt()))
 }
 
-/// Returns how far a coefficient may move if values at 16 places \[mm\] move by the rounding of the places.
+/// Returns how far the rounding of 16 places may move a coefficient of the series through the values there, in the values' unit.
 fn moved(x: &Lanes, values: &Lanes) -> f64 {
     let slopes = (1..POINTS).map(|k| ((values[k] - values[k - 1]) / (x[k] - x[k - 1])).abs());
     // Places that rounding makes one say nothing.

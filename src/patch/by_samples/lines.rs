@@ -2,8 +2,9 @@
 //! t + δ (1 − cos α).
 //!
 //! On a line of constant ξ the patch may be several intervals of η, as on either side of a dip. The lines lie half a millimetre apart,
-//! nearer to each other around C, and on the joints of swept bodies. Where two neighbours differ in the number of their slices, or an end moves far between them,
-//! intervals begin, end, divide or join in between; lines are then added there until that place is known to rounding.
+//! nearer to each other around C, and on the joints of swept bodies. Where two neighbours differ in the number of their slices, or an end
+//! moves far between them, intervals begin, end, divide or join in between; lines are then added there until that place is known to
+//! rounding.
 //!
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
