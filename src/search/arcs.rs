@@ -9,6 +9,7 @@ use crate::numerics::interval::Interval;
 use crate::profile::Station;
 
 /// Looks for contact of two elements; returns whether there is a closed form.
+#[inline(always)]
 pub(super) fn meet(search: &mut Search, elements: [u32; 2]) -> bool {
     let [wheel, rail] = search.elements(elements);
     let yawed = search.attitude.sin_yaw != 0.0;
@@ -70,6 +71,7 @@ fn steepest_seen(attitude: &Attitude, arc: &ArcElement) -> Option<f64> {
 impl ArcPair<'_, '_> {
     /// Solves an arc or fan of the unyawed wheel over an arc or fan of the rail: both abscissae are linear in
     /// the sine of the tangent.
+    #[inline(always)]
     fn arc_on_arc(&mut self, (arc, wheel): (&ArcElement, &Element), (below, rail): (&ArcElement, &Element)) {
         let Some(seen) = seen(self.search.attitude, arc, wheel) else { return };
         let Interval { low, high } = seen.sine.cut(rail.range);

@@ -7,7 +7,7 @@ use super::locus::Attitude;
 use super::lofted::{Cut, LoftedPair, LoftedSearch};
 use super::over_rail::Work;
 use super::touch::{ContactSearch, ProfilePair, Selection, Touch};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::placement::{Pair, Track, Wheelset};
 
 /// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
@@ -107,11 +107,14 @@ impl SideSearch<'_> {
         }
     }
 
-    /// Gives the error of a search that ended without an answer since the last call; `None` if all had one.
-    pub fn gave_up(&mut self) -> Option<Error> {
+    /// Tells whether all searches since the last call had an answer.
+    ///
+    /// # Errors
+    /// A body that varies and follows the other one's shape all over.
+    pub fn answered(&mut self) -> Result<()> {
         match self {
-            Self::Swept(_) => None,
-            Self::Lofted(search) => std::mem::take(&mut search.gave_up).then(|| search.pair().too_close()),
+            Self::Swept(_) => Ok(()),
+            Self::Lofted(search) => search.answered(),
         }
     }
 

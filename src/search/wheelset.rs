@@ -274,9 +274,8 @@ impl WheelsetSearch<'_> {
                 level => level,
             },
         };
-        if let Some(error) = self.sides.each_mut().map(SideSearch::gave_up).into_iter().flatten().next() {
-            return Err(error);
-        }
+        let [left, right] = &mut self.sides;
+        left.answered().and(right.answered())?;
         let Some(Lowered { kept, heights, attitudes, meetings }) = level else { return Ok(None) };
         let KeptPlaces { roll, z, .. } = kept;
         let [left, right] = &mut self.sides;

@@ -14,6 +14,7 @@ mod settle;
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::mem;
 use std::sync::Arc;
 
 use super::body::SearchBody;
@@ -73,8 +74,8 @@ pub(super) struct LoftedSearch<'a> {
     queue: BinaryHeap<Open>,
     found: Vec<FoundPlace>,
     contacts: Vec<Contact>,
-    /// Whether a search had too many parts to look at; no other search is made until this is reset.
-    pub gave_up: bool,
+    /// Whether a search had too many parts to look at; no other search is made until [`Self::answered`] has told.
+    gave_up: bool,
     pub work: Work,
 }
 
@@ -134,9 +135,7 @@ impl LoftedPair {
         search.stand_at(along, pitch);
         let attitude = pose.attitude(self.radius);
         let lowest = search.lower(&attitude, selection.within);
-        if search.gave_up {
-            return Err(self.too_close());
-        }
+        search.answered()?;
         let height = -lowest.ok_or_else(beside_its_rail)?.gap;
         Ok((height, search.collect(&attitude, height, selection).contacts.to_vec()))
     }
@@ -188,7 +187,7 @@ impl LoftedPair {
     }
 
     /// Makes the error of bodies that touch at so many places at once that no search tells these apart.
-    pub(super) fn too_close(&self) -> Error {
+    fn too_close(&self) -> Error {
         let (place, other) = match self.varying {
             Side::Rail => ("rail", "wheel"),
             Side::Wheel => ("wheel", "rail"),
@@ -224,9 +223,12 @@ impl LoftedPair {
 }
 
 impl<'a> LoftedSearch<'a> {
-    /// Gives the bodies that it searches over.
-    pub fn pair(&self) -> &'a LoftedPair {
-        self.pair
+    /// Tells whether all searches since the last call had an answer.
+    ///
+    /// # Errors
+    /// A body that varies and follows the other one's shape all over.
+    pub fn answered(&mut self) -> Result<()> {
+        if mem::take(&mut self.gave_up) { Err(self.pair.too_close()) } else { Ok(()) }
     }
 
     /// Moves the axle's middle to a place \[mm\] of the list of a rail that varies, or turns a wheel that varies by a pitch \[rad\], +
