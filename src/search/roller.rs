@@ -10,18 +10,34 @@
 //! a search at one ν bounds the gaps of all places. Without yaw, ν is 0 for a wheel above the crown, and a roller is a rail.
 
 use super::candidates::{Candidate, Meeting};
+use super::element::ElementCurve;
 use super::locus::Attitude;
 use super::over_rail::RailSearch;
 use crate::numerics::interval::Interval;
+use crate::numerics::roots::bracketed;
 
 /// Most steps to the ν of a place. Each gains a digit or more; halving alone takes some 60.
 const STEPS: usize = 80;
 
-/// Number of passes after each of which ν moves to that of the best place. Then ν is kept, and a pass reaches as far as the bounds ask for.
-const FREE_PASSES: usize = 2;
+/// Most searches, each at the ν of the best place of the one before.
+const PASSES: usize = 3;
 
-/// Most passes over all pairs: the free ones, one that finds how far the places reach, one that covers them.
-const PASSES: usize = FREE_PASSES + 2;
+/// Difference \[mm\] of the lowest gaps over the roller and over the rail of one ν, up to which they are equal: some roundings.
+const SAME_GAP: f64 = 1e-11;
+
+/// Distance \[mm\] along the wheel's profile, and difference of the sines of its tangents, between two points of a walk. Of two places of
+/// contact that are nearer to each other, the gaps differ by less than any profile's accuracy.
+const WALKED: f64 = 0.25;
+const TURNED: f64 = 0.02;
+
+/// y′ \[mm\] up to which a point of a walk lies in the observer's own plane.
+const NEARLY: f64 = 1e-3;
+
+/// Largest difference of the sines of two tangents at a smooth place of contact; at a kink they jump.
+const SMOOTH: f64 = 1e-6;
+
+/// y′ \[mm\] at the end of a search for ν, up to which it is rounding; beyond, the search has gone from one place to another.
+const IN_PLANE: f64 = 1e-6;
 
 /// Height \[mm\] above the lowest place up to which a place that has left its elements is searched: near misses beyond it are of no
 /// interest.
@@ -81,39 +97,168 @@ impl Meridian {
 /// Returns the lowest candidate over a roller of this radius \[mm\], and leaves all others up to `within` above it in the
 /// buffer. Gaps are vertical.
 ///
-/// Method: a search at one ν collects candidates, and each is followed to its own ν. A further search then reaches as far as
-/// any place may be whose gap over the roller counts.
+/// Method: a search at one ν collects candidates, and each is followed to its own ν, where the next search is made. A place whose gap over
+/// the roller is the least over the rail of one ν is proved to be the lowest. Where none is, because places with different ν
+/// compete, or where near misses are asked for, a walk along the wheel's profile finds the places.
 pub(super) fn lower_on_roller(
     search: &mut RailSearch<'_>,
     attitude: &Attitude,
     roller: f64,
     within: f64,
 ) -> Option<Candidate> {
+    let mut places = PlacesOnRoller { search, attitude, roller, found: Vec::new() };
     let mut turn = attitude.along / (attitude.radius + roller);
-    let (mut reach, mut found) = (within, Vec::new());
-    for pass in 0..PASSES {
-        let meridian = Meridian::new(attitude, roller, turn);
-        let lowest = search.lower(&meridian.attitude, reach)?.gap;
-        let seen = std::mem::take(&mut search.candidates);
-        found.clear();
-        found.extend(seen.iter().filter_map(|candidate| {
-            let meeting = Meeting { turn, ..candidate.meeting };
-            at_own_turn(search, attitude, roller, &meeting, Some(candidate))
-        }));
-        search.candidates = seen;
-        let best = *found.iter().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-        // Any other place up to there has no larger gap over the rail of this ν.
-        let needed = (best.gap + within) * meridian.cos - meridian.level - lowest;
-        if needed <= reach {
+    let mut proven = false;
+    for _ in 0..PASSES {
+        places.found.clear();
+        let lowest = places.collect(turn, within)?;
+        let Some(best) = places.best() else { break };
+        proven = best.gap - lowest <= SAME_GAP;
+        if proven {
             break;
         }
-        reach = needed;
-        if pass < FREE_PASSES {
-            turn = best.meeting.turn;
+        turn = best.meeting.turn;
+    }
+    if !proven || within > 0.0 {
+        places.collect_along_wheel();
+    }
+    let best = places.best();
+    search.candidates = places.found;
+    best
+}
+
+/// The places of contact with a roller that searches at several ν have found.
+struct PlacesOnRoller<'s, 'a> {
+    search: &'s mut RailSearch<'a>,
+    attitude: &'s Attitude,
+    /// Distance \[mm\] from the roller's axle to the origin of its profile.
+    roller: f64,
+    found: Vec<Candidate>,
+}
+
+impl PlacesOnRoller<'_, '_> {
+    /// Adds the places to which all candidates over the rail of one ν lead, up to `reach` \[mm\] above the lowest, and returns the
+    /// lowest's gap over that rail \[mm\]; `None` if no part of the wheel is over it.
+    fn collect(&mut self, turn: f64, reach: f64) -> Option<f64> {
+        let meridian = Meridian::new(self.attitude, self.roller, turn);
+        let lowest = self.search.lower(&meridian.attitude, reach / meridian.cos)?;
+        let seen = std::mem::take(&mut self.search.candidates);
+        self.found.extend(seen.iter().filter_map(|candidate| {
+            let meeting = Meeting { turn, ..candidate.meeting };
+            at_own_turn(self.search, self.attitude, self.roller, &meeting, Some(candidate))
+        }));
+        self.search.candidates = seen;
+        Some(meridian.seen(lowest, self.attitude.along).0.gap)
+    }
+
+    /// Returns the lowest place.
+    fn best(&self) -> Option<Candidate> {
+        self.found.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied()
+    }
+
+    /// Adds the places of contact that a walk along the wheel's profile finds, each at its own ν: also those where the gap is largest over
+    /// the rail of that ν, and yet least over the roller, which falls away from that rail.
+    ///
+    /// Method: each point of the wheel's profile has a ν at which it lies in the observer's own plane. The sine of the tangent there less
+    /// that of the roller's below changes its sign at a place of contact, and jumps where the roller has a kink.
+    fn collect_along_wheel(&mut self) {
+        let wheel = &self.search.pair.wheel;
+        for (index, element) in wheel.elements.iter().enumerate() {
+            let [first, last] = element.ends;
+            let length = (last.x - first.x).hypot(last.z - first.z);
+            let count = (length / WALKED).max((last.sin - first.sin).abs() / TURNED).ceil().max(1.0) as usize;
+            let mut turn = self.attitude.along / (self.attitude.radius + self.roller);
+            let mut before: Option<(f64, Candidate, f64)> = None;
+            for k in 0..=count {
+                let p = element.range.step(k, count);
+                let Some((here, rise)) = self.facing(index, p, &mut turn, NEARLY) else {
+                    before = None;
+                    continue;
+                };
+                let change = before.filter(|(_, there, last)| {
+                    (*last > 0.0) != (rise > 0.0) && (rise - last) * (here.rail.x - there.rail.x) > 0.0
+                });
+                if let Some((start, ..)) = change {
+                    let mut turn = here.meeting.turn;
+                    let mut at = |p: f64| self.facing(index, p, &mut turn, 0.0);
+                    let root = bracketed(|p| at(p).map_or(f64::NAN, |(_, rise)| rise), start, p);
+                    if let Some((place, rise)) = root.and_then(at) {
+                        self.found.extend(if rise.abs() <= SMOOTH {
+                            Some(place)
+                        } else {
+                            self.on_kink(place)
+                        });
+                    }
+                }
+                before = Some((p, here, rise));
+            }
         }
     }
-    std::mem::swap(&mut search.candidates, &mut found);
-    search.candidates.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied()
+
+    /// Moves a place over a kink or an end of the rail onto the fan of its normals; `None` if there is none with that tangent.
+    fn on_kink(&self, place: Candidate) -> Option<Candidate> {
+        let rail = &self.search.pair.rail.elements;
+        let outline =
+            Meridian::new(self.attitude, self.roller, place.meeting.turn).attitude.outline(&place.wheel);
+        let near = place.meeting.elements[1] as usize;
+        let (index, fan) = (near.saturating_sub(1)..rail.len().min(near + 2)).find_map(|k| {
+            let ElementCurve::Arc(arc) = &rail[k].shape else { return None };
+            let here = (arc.centre[0] - place.rail.x).abs() <= 16.0 * f64::EPSILON * self.search.pair.extent;
+            (arc.radius == 0.0 && here && rail[k].range.contains(outline.sin)).then_some((k, arc))
+        })?;
+        let meeting = Meeting {
+            elements: [place.meeting.elements[0], index as u32],
+            parameters: [place.meeting.parameters[0], outline.sin],
+            ..place.meeting
+        };
+        Some(Candidate { rail: fan.at(outline.sin, outline.cos), rail_radius: fan.radius, meeting, ..place })
+    }
+
+    /// Returns a point of the wheel over the roller, at the ν at which it lies in the observer's own plane to an accuracy \[mm\], and the
+    /// sine of its tangent less that of the roller's below; −1 and 1 beyond the roller's ends, where this has its end. `None` where the wheel
+    /// has no outline. `turn` is a first ν, and becomes that of the point.
+    fn facing(
+        &self,
+        index: usize,
+        parameter: f64,
+        turn: &mut f64,
+        accuracy: f64,
+    ) -> Option<(Candidate, f64)> {
+        let [above, below] = [&self.search.pair.wheel, &self.search.pair.rail];
+        let wheel = &above.elements[index];
+        let own = wheel.place(&above.coefficients, parameter);
+        let slope = -(self.attitude.radius + self.roller);
+        let mut steps = 0;
+        loop {
+            let meridian = Meridian::new(self.attitude, self.roller, *turn);
+            let outline = meridian.attitude.outline(&own.station);
+            if !(outline.x.is_finite() && outline.cos > 0.0) {
+                return None;
+            }
+            let x = below.extent[0].nearest(outline.x);
+            let rail_index = below.element_at(x);
+            let rail = &below.elements[rail_index];
+            let foot_parameter = rail.parameter_at(&below.coefficients, x);
+            let foot = rail.place(&below.coefficients, foot_parameter);
+            let (elements, parameters) = ([index as u32, rail_index as u32], [parameter, foot_parameter]);
+            let candidate = Candidate {
+                gap: outline.z - foot.station.z,
+                rail: foot.station,
+                wheel: own.station,
+                wheel_radius: wheel.radius(&own),
+                rail_radius: rail.radius(&foot),
+                meeting: Meeting { elements, parameters, turn: *turn },
+            };
+            let (place, beside) = meridian.seen(candidate, self.attitude.along);
+            let next = *turn - beside / slope;
+            if beside.abs() <= accuracy || next == *turn || steps == STEPS {
+                let beyond = outline.x - x;
+                let rise = if beyond == 0.0 { outline.sin - foot.station.sin } else { beyond.signum() };
+                return Some((place, rise));
+            }
+            (*turn, steps) = (next, steps + 1);
+        }
+    }
 }
 
 /// Follows a place of contact to the ν at which it lies in the observer's own plane; `None` if it vanishes on the way.
@@ -155,7 +300,7 @@ pub(super) fn at_own_turn(
         let next = turn - beside / slope;
         let next = if ends.surrounds(next) { next } else { ends.middle() };
         if next == turn || next == ends.low || next == ends.high {
-            return Some(seen);
+            return (beside.abs() <= IN_PLANE).then_some(seen);
         }
         meeting = Meeting { turn: next, ..seen.meeting };
     }
