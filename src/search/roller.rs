@@ -99,7 +99,7 @@ impl Meridian {
 ///
 /// Method: a search at one ν collects candidates, and each is followed to its own ν, where the next search is made. A place whose gap over
 /// the roller is the least over the rail of one ν is proved to be the lowest. Where none is, because places with different ν
-/// compete, or where near misses are asked for, a walk along the wheel's profile finds the places.
+/// compete, a walk along the wheel's profile finds the places.
 pub(super) fn lower_on_roller(
     search: &mut RailSearch<'_>,
     attitude: &Attitude,
@@ -119,7 +119,7 @@ pub(super) fn lower_on_roller(
         }
         turn = best.meeting.turn;
     }
-    if !proven || within > 0.0 {
+    if !proven {
         places.collect_along_wheel();
     }
     let best = places.best();
