@@ -17,6 +17,9 @@ use crate::profile::Section;
 /// Distance of two corners, as a share of the band's length, up to which they count as one.
 pub(super) const ONE_CORNER: f64 = 1e-11;
 
+/// Width next to an end, as a share of that in the middle, up to which a band ends in a point there.
+const NARROW: f64 = 1e-5;
+
 /// Rounding of s in units of the rounding of the coordinates.
 const ROUNDINGS: f64 = 4.0;
 
@@ -79,8 +82,15 @@ impl Band {
             }
         }
         corners.push(self.xi.high);
-        // An edge with a corner next to an end may be as wide there as anywhere.
-        let blunted = |end: f64| self.corners.iter().any(|corner| *corner != end && !apart(*corner, end));
+        // A band with a corner next to an end may be as wide there as anywhere.
+        let mut width = |xi: f64| {
+            let edges = outline.slicer.edges(xi, self.valley(xi));
+            edges.map_or(0.0, |[low, high]| high.eta - low.eta)
+        };
+        let narrow = NARROW * width(self.xi.middle());
+        let mut blunted = |end: f64| {
+            self.corners.iter().any(|&corner| corner != end && !apart(corner, end) && width(corner) > narrow)
+        };
         let zero = [0, 1].map(|end| {
             let side = self.sides[end];
             let is_tip = self.ends[end] == Some(End::Tip) || self.window.surrounds(side.low);

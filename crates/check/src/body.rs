@@ -4,6 +4,7 @@ use super::meshes::{Hit, Mesh, RayOrigin, Vector};
 use super::patch::{CurveMesh, ParameterPoint};
 use super::ray::{Height, foot, height};
 use super::sampler::{SampledCurve, SampledSurface};
+use wheelrail::Interval;
 use wheelrail::error::{Error, ErrorKind, Result};
 use wheelrail::placement::Placement;
 
@@ -267,7 +268,7 @@ fn around(v: f64) -> f64 {
     if cells < CELLS_AROUND as f64 { CELLS_AROUND as f64 } else { cells }
 }
 
-/// Returns n + 1 values from a to b.
+/// Returns n + 1 values from a to b, both to the bit.
 pub(super) fn spread(a: f64, b: f64, n: usize) -> Vec<f64> {
-    (0..=n).map(|k| a + (b - a) * k as f64 / n as f64).collect()
+    (0..=n).map(|k| Interval::new(a, b).step(k, n)).collect()
 }

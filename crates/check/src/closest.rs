@@ -38,11 +38,12 @@ pub(super) struct Closest {
     pub error: f64,
 }
 
-/// Returns the point of a body that is closest to `point`, over all curves near the coarse result.
+/// Returns the point of a body that is closest to `point`, over all curves near the coarse result; `None` where the search on one of
+/// them, which may hold it, does not settle.
 pub(super) fn to_point(solid: &Solid, point: Vector) -> Option<Closest> {
-    let near = solid.near(point).into_iter();
-    near.filter_map(|start| on_curve(&solid.surface, start, point))
-        .min_by(|a, b| a.distance.total_cmp(&b.distance))
+    let near = solid.near(point).into_iter().map(|start| on_curve(&solid.surface, start, point));
+    let found: Option<Vec<Closest>> = near.collect();
+    found?.into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
 fn on_curve(surface: &SampledSurface, start: ParameterPoint, point: Vector) -> Option<Closest> {
