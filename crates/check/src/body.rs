@@ -182,11 +182,7 @@ impl Solid {
 
     fn coarse(&self, xi: f64, eta: f64, origin: RayOrigin) -> Option<ParameterPoint> {
         let mesh = self.mesh.as_ref()?;
-        // Rays through an edge or vertex of the mesh may miss it, so that places beside it are tried.
-        let nudge = self.surface.size * f64::EPSILON.sqrt();
-        let beside = [[0.0, 0.0], [1.0, 0.7], [-0.7, 1.0], [-1.0, -0.6], [0.6, -1.0]];
-        let hit =
-            beside.iter().find_map(|[a, b]| mesh.along_zeta(xi + a * nudge, eta + b * nudge, origin))?;
+        let hit = mesh.along_zeta_beside(xi, eta, origin, self.surface.size * f64::EPSILON.sqrt())?;
         Some(self.own_place(hit))
     }
 

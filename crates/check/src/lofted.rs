@@ -301,7 +301,11 @@ impl<'a> MeshedLoft<'a> {
 
     fn ray(&self, [xi, eta]: [f64; 2], origin: RayOrigin) -> RayHit {
         let outward = if self.lofted.side() == Side::Rail { 1.0 } else { -1.0 };
-        let met = self.meshes.iter().filter_map(|own| Some((own, own.mesh.along_zeta(xi, eta, origin)?)));
+        let nudge = self.size * f64::EPSILON.sqrt();
+        let met = self
+            .meshes
+            .iter()
+            .filter_map(|own| Some((own, own.mesh.along_zeta_beside(xi, eta, origin, nudge)?)));
         let height = |hit: &Hit| outward * hit.point.z;
         let Some((own, hit)) = met.max_by(|a, b| height(&a.1).total_cmp(&height(&b.1))) else {
             return RayHit::Nothing;

@@ -47,6 +47,13 @@ impl Mesh {
         TriMesh::new(vertices, triangles).ok().map(Self)
     }
 
+    /// Returns where a line parallel to ζ meets the mesh first. Through an edge or a vertex it may miss the mesh, so that lines `nudge` \[mm\]
+    /// beside it are tried, too.
+    pub fn along_zeta_beside(&self, xi: f64, eta: f64, origin: RayOrigin, nudge: f64) -> Option<Hit> {
+        let beside = [[0.0, 0.0], [1.0, 0.7], [-0.7, 1.0], [-1.0, -0.6], [0.6, -1.0]];
+        beside.iter().find_map(|[a, b]| self.along_zeta(xi + a * nudge, eta + b * nudge, origin))
+    }
+
     /// Returns where the ray through (ξ, η) along ζ first meets the mesh; `None` if it misses the mesh.
     ///
     /// Rays from below or above start close to the mesh's box: a longer ray would lose digits.
