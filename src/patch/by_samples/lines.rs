@@ -233,11 +233,10 @@ impl<'a> BySamples<'a> {
         let dips: Vec<usize> = (1..points.len().max(1) - 1)
             .filter(|&k| {
                 let [a, s, b] = [k - 1, k, k + 1].map(|k| points[k][1]);
-                // A parabola through the three, at equal steps, falls below the middle one by at most an eighth of the sum; half of it
-                // is allowed for. A level stretch, as on a flat, has no lower place.
+                // Into a crease s falls, at equal steps, no further below the middle one than by the larger difference; into a parabola by at
+                // most an eighth of their sum. A level stretch, as on a flat, has no lower place.
                 let [before, after] = [a - s, b - s];
-                let dip = before >= 0.0 && after >= 0.0 && before.max(after) > ROUNDING;
-                dip && (s - approach < 0.5 * (before + after) || s < approach)
+                before >= 0.0 && after >= 0.0 && before.max(after) > ROUNDING.max(s - approach)
             })
             .collect();
         for k in dips.into_iter().rev() {
