@@ -186,6 +186,28 @@ fn chain(random: &mut Random, half: f64, steepest: f64) -> String {
     segments.collect::<Vec<_>>().join(", ")
 }
 
+/// The patch ends in a point where the wheel's end leaves it, a rounding beside a corner of its boundary.
+#[test]
+fn a_corner_a_rounding_beside_a_tip_crosses_no_edges() {
+    let text = "[rail]\nsegments = [\
+        { line = { from = [4.3842030807824806, -6.16741156756034], to = [20.072037264548143, -2.08035042966919] } },\
+        { arc = { center = [9.761431111119986, -169.84178907621737], radius = 168.0779845667203, half = \"upper\", \
+        x = [20.072037264548143, 35.80773760717342] } }]\n[wheel]\nradius = 534.9\nsegments = [\
+        { line = { from = [3.502664830427779, -2.394717943731659], to = [19.996807854279165, -6.662337787733948] } },\
+        { polynomial = { x = [19.996807854279165, 30.486366749978174], coefficients = \
+        [-3.1420030530202046, 0.1400247301748465, -0.022629878622180667, 0.00034124834681330827] } }]\n\
+        [contact]\noffset = -4.398\nyaw = -0.0589143622294339\n";
+    let scene = scene::parse(text, false).expect("a scene");
+    let case = scene::resolve(&scene, Path::new("."), "sliver").expect("a case");
+    let (_, placement) = &contacts(&case).expect("a contact")[0];
+    let patch = whole(placement, 0.04119795942022962);
+    let area = patch.area();
+    for size in [1.0, 0.1, 0.02] {
+        let mesh = TriangleMesh::new(placement, &patch, Some(size)).expect("a mesh");
+        assert!((mesh.area(0) / area - 1.0).abs() < 1e-3, "{size}: {} of {area}", mesh.area(0));
+    }
+}
+
 /// Patches with cusps at the ends of profiles, thin parts and several parts: random chains, under windows that cut.
 #[test]
 fn random_chains_keep_their_angles() {
