@@ -225,7 +225,7 @@ fn a_patch_on_the_edge_of_a_flat_has_two_tips() -> Result<()> {
     let text = "[rail]\nprofile = \"54E1\"\nrotate = \"1:40\"\n[wheel]\nradius = 337.3\nprofile = \"EN13715-1:40-h28-e32.5\"\n\
                 flat = { length = 54.7, angle = -0.069 }\n[track]\ngauge = 1435\n[wheelset]\nback_to_back = 1360\n\
                 flange_back_x = -70.0\nlateral = -5.113\nyaw = 0.03\nroll = \"neglect\"\npitch = 0.129\n\
-                [patch]\napproach = 0.03043\n";
+                [patch]\napproach = 0.030434242730778938\n";
     let run = Run::new(scene::resolve(&scene::parse(text, false)?, Path::new(""), "")?, SILENT)?;
     let patch = run.parts[0].site.contact.whole_patch().expect("a patch");
     let tips = patch.components[0].xi;
