@@ -87,9 +87,9 @@ impl Band {
             let edges = outline.slicer.edges(xi, self.valley(xi));
             edges.map_or(0.0, |[low, high]| high.eta - low.eta)
         };
-        let narrow = NARROW * width(self.xi.middle());
         let mut blunted = |end: f64| {
-            self.corners.iter().any(|&corner| corner != end && !apart(corner, end) && width(corner) > narrow)
+            let mut near = self.corners.iter().filter(|&&corner| corner != end && !apart(corner, end));
+            near.any(|&corner| width(corner) > NARROW * width(self.xi.middle()))
         };
         let zero = [0, 1].map(|end| {
             let side = self.sides[end];
