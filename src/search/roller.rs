@@ -25,8 +25,8 @@ const PASSES: usize = 3;
 /// Difference \[mm\] of the lowest gaps over the roller and over the rail of one ν, up to which they are equal: some roundings.
 const SAME_GAP: f64 = 1e-11;
 
-/// Distance \[mm\] along the wheel's profile, and difference of the sines of its tangents, between two points of a walk. Of two places of
-/// contact that are nearer to each other, the gaps differ by less than any profile's accuracy.
+/// Distance \[mm\] along the wheel's profile, and difference of the sines of its tangents, between two points of a walk. A dip of the gap
+/// that lies between two points is not seen: on profiles of railways it is less than a tenth of a micrometre deep.
 const WALKED: f64 = 0.25;
 const TURNED: f64 = 0.02;
 
