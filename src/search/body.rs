@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::bounds::{Bounds, DerivativeBounds};
-use super::element::{ArcElement, Element, ElementCurve, PolynomialPart};
+use super::element::{ArcElement, Element, ElementCurve, ElementPoint, PolynomialPart};
 use crate::numerics::interval::Interval;
 use crate::numerics::polynomial::bernstein;
 use crate::profile::{Branch, BranchPoint, BranchShape, ONE_JOINT, PolynomialBranch, Section, Side, Station};
@@ -90,10 +90,13 @@ impl SearchBody {
         Some(Self { elements, coefficients, nodes, rounding, extent })
     }
 
-    /// Returns the index of the element that holds an abscissa, or is next to it.
-    pub fn element_at(&self, x: f64) -> usize {
+    /// Returns the point at an abscissa \[mm\], with the index of its element and its parameter. The abscissa must be within the body's extent.
+    pub fn point_at(&self, x: f64) -> (u32, f64, ElementPoint) {
         let index = self.elements.partition_point(|element| element.bounds.x.high < x);
-        index.min(self.elements.len() - 1)
+        let index = index.min(self.elements.len() - 1);
+        let element = &self.elements[index];
+        let parameter = element.parameter_at(&self.coefficients, x);
+        (index as u32, parameter, element.place(&self.coefficients, parameter))
     }
 }
 

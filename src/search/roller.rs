@@ -25,9 +25,11 @@ const PASSES: usize = 3;
 /// Difference \[mm\] of the lowest gaps over the roller and over the rail of one ν, up to which they are equal: some roundings.
 const SAME_GAP: f64 = 1e-11;
 
-/// Distance \[mm\] along the wheel's profile, and difference of the sines of its tangents, between two points of a walk. A dip of the gap
-/// that lies between two points is not seen: on profiles of railways it is less than a tenth of a micrometre deep.
+/// Largest distance \[mm\] along the wheel's profile between two points of a walk. A dip of the gap that lies between two points is not
+/// seen: on profiles of railways it is less than a tenth of a micrometre deep.
 const WALKED: f64 = 0.25;
+
+/// Largest difference of the sines of the profile's tangents between two points of a walk.
 const TURNED: f64 = 0.02;
 
 /// y′ \[mm\] up to which a point of a walk lies in the observer's own plane.
@@ -175,24 +177,24 @@ impl PlacesOnRoller<'_, '_> {
                     before = None;
                     continue;
                 };
-                let change = before.filter(|(_, there, last)| {
+                let rises = |(_, there, last): &(f64, Candidate, f64)| {
                     (*last > 0.0) != (rise > 0.0) && (rise - last) * (here.rail.x - there.rail.x) > 0.0
-                });
-                if let Some((start, ..)) = change {
-                    let mut turn = here.meeting.turn;
-                    let mut at = |p: f64| self.facing(index, p, &mut turn, 0.0);
-                    let root = bracketed(|p| at(p).map_or(f64::NAN, |(_, rise)| rise), start, p);
-                    if let Some((place, rise)) = root.and_then(at) {
-                        self.found.extend(if rise.abs() <= SMOOTH {
-                            Some(place)
-                        } else {
-                            self.on_kink(place)
-                        });
-                    }
-                }
+                };
+                let place =
+                    before.filter(rises).and_then(|(from, ..)| self.place_between(index, [from, p], turn));
+                self.found.extend(place);
                 before = Some((p, here, rise));
             }
         }
+    }
+
+    /// Returns the place of contact between two parameters of an element of the wheel, where the tangent's sine passes the roller's; `None`
+    /// if it passes at a hollow kink. `turn` is a ν nearby.
+    fn place_between(&self, index: usize, [from, to]: [f64; 2], mut turn: f64) -> Option<Candidate> {
+        let mut at = |p: f64| self.facing(index, p, &mut turn, 0.0);
+        let root = bracketed(|p| at(p).map_or(f64::NAN, |(_, rise)| rise), from, to)?;
+        let (place, rise) = at(root)?;
+        if rise.abs() <= SMOOTH { Some(place) } else { self.on_kink(place) }
     }
 
     /// Moves a place over a kink or an end of the rail onto the fan of its normals; `None` if there is none with that tangent.
@@ -214,9 +216,11 @@ impl PlacesOnRoller<'_, '_> {
         Some(Candidate { rail: fan.at(outline.sin, outline.cos), rail_radius: fan.radius, meeting, ..place })
     }
 
-    /// Returns a point of the wheel over the roller, at the ν at which it lies in the observer's own plane to an accuracy \[mm\], and the
-    /// sine of its tangent less that of the roller's below; −1 and 1 beyond the roller's ends, where this has its end. `None` where the wheel
-    /// has no outline. `turn` is a first ν, and becomes that of the point.
+    /// Returns the point of the wheel at a parameter of one of its elements, over the roller's point below it, and the sine of the outline's
+    /// tangent less that of the roller's. Beside the roller its end stands for the point below, and the difference is −1 on the track side, 1
+    /// on the field side. `None` where the wheel has no outline.
+    ///
+    /// `turn` is a first ν, and becomes the one at which the point lies in the observer's own plane to an accuracy \[mm\].
     fn facing(
         &self,
         index: usize,
@@ -236,17 +240,14 @@ impl PlacesOnRoller<'_, '_> {
                 return None;
             }
             let x = below.extent[0].nearest(outline.x);
-            let rail_index = below.element_at(x);
-            let rail = &below.elements[rail_index];
-            let foot_parameter = rail.parameter_at(&below.coefficients, x);
-            let foot = rail.place(&below.coefficients, foot_parameter);
-            let (elements, parameters) = ([index as u32, rail_index as u32], [parameter, foot_parameter]);
+            let (under, foot_parameter, foot) = below.point_at(x);
+            let (elements, parameters) = ([index as u32, under], [parameter, foot_parameter]);
             let candidate = Candidate {
                 gap: outline.z - foot.station.z,
                 rail: foot.station,
                 wheel: own.station,
                 wheel_radius: wheel.radius(&own),
-                rail_radius: rail.radius(&foot),
+                rail_radius: below.elements[under as usize].radius(&foot),
                 meeting: Meeting { elements, parameters, turn: *turn },
             };
             let (place, beside) = meridian.seen(candidate, self.attitude.along);

@@ -107,10 +107,10 @@ impl SideSearch<'_> {
         }
     }
 
-    /// Tells whether all searches since the last call had an answer.
+    /// Makes sure that all searches since the last call had an answer.
     ///
     /// # Errors
-    /// A body that varies and follows the other one's shape all over.
+    /// A search that ended without one: a body that varies and follows the other one's shape all over.
     pub fn answered(&mut self) -> Result<()> {
         match self {
             Self::Swept(_) => Ok(()),

@@ -168,9 +168,7 @@ fn gap_at(search: &Search, meeting: &Meeting) -> Option<f64> {
     if !(below.extent[0].contains(outline.x) && outline.cos > 0.0) {
         return None;
     }
-    let rail = &below.elements[below.element_at(outline.x)];
-    let parameter = rail.parameter_at(&below.coefficients, outline.x);
-    let foot = rail.place(&below.coefficients, parameter).station;
+    let foot = below.point_at(outline.x).2.station;
     let gap = outline.z - foot.z + search.slack;
     ((foot.x - outline.x).abs() <= search.slack && gap.is_finite()).then_some(gap)
 }

@@ -74,7 +74,7 @@ pub(super) struct LoftedSearch<'a> {
     queue: BinaryHeap<Open>,
     found: Vec<FoundPlace>,
     contacts: Vec<Contact>,
-    /// Whether a search had too many parts to look at; no other search is made until [`Self::answered`] has told.
+    /// Whether a search had too many parts to look at; no other search is made until [`Self::answered`] is called.
     gave_up: bool,
     pub work: Work,
 }
@@ -223,10 +223,10 @@ impl LoftedPair {
 }
 
 impl<'a> LoftedSearch<'a> {
-    /// Tells whether all searches since the last call had an answer.
+    /// Makes sure that all searches since the last call had an answer.
     ///
     /// # Errors
-    /// A body that varies and follows the other one's shape all over.
+    /// A search that ended without one: a body that varies and follows the other one's shape all over.
     pub fn answered(&mut self) -> Result<()> {
         if mem::take(&mut self.gave_up) { Err(self.pair.too_close()) } else { Ok(()) }
     }

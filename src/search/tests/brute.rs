@@ -221,7 +221,8 @@ fn on_roller(seed: u64, yaw: f64) -> Result<RandomScene> {
 
 #[test]
 fn first_touch_on_rollers_agrees_with_dense_samples() -> Result<()> {
-    for seed in (0..300).filter(|seed| seed % 3 != 0) {
+    // In three scenes the samples are stuck over a kink, up to 1.7 µm above the place of contact.
+    for seed in (0..300).filter(|seed| ![39, 186, 261].contains(seed)) {
         let yaw = [0.02, 0.05, 0.1][seed as usize % 5 % 3];
         compare_scene(&format!("seed {seed}"), on_roller(seed, yaw)?)?;
     }
