@@ -9,6 +9,7 @@
 //! the shape. A question that none of them answers is an error that lists the choices. Every decision is in the [`Record`].
 //! This module does not access the disk.
 
+mod ask;
 mod clean;
 mod column;
 mod fit;
@@ -19,6 +20,7 @@ mod read;
 mod shape;
 mod slice;
 mod unit;
+mod words;
 pub mod write;
 
 #[cfg(test)]
@@ -35,11 +37,14 @@ pub use options::{
 };
 pub use place::{Step, Transform};
 pub use read::format::Format;
-pub use read::points::{DesignElement, ElementShape, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points};
+pub use read::points::{
+    ColumnChoice, DesignElement, ElementShape, Gap, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points,
+};
 pub use read::scan::LARGEST_FILE;
 pub use read::slices::{ListedSlice, MOST_SLICES, SliceList, listed_body};
 pub use slice::{CutRecord, SectionOfList, Share};
 pub use unit::Unit;
+pub use words::{Surface, spoken, spoken_error};
 
 use serde::Serialize;
 
@@ -153,7 +158,7 @@ pub fn of_points(name: &str, at: &[[f64; 2]], side: Side, options: &Options) -> 
         points.push(read::scan::Line { number: 0, text: "" }, point, 1.0)?;
     }
     let placed = placed(points, side, options)?;
-    drawn(name, "points".into(), placed, side, options, None).map_err(|error| error.within(name))
+    drawn(name, "points".into(), placed, options, None).map_err(|error| error.within(name))
 }
 
 /// Returns the body that a file describes, by its extension or its header. Returns `None` if neither tells.
@@ -206,8 +211,18 @@ pub fn section(
         let model = of(&record.points_of).ok_or_else(|| missing(&record.points_of))?;
         let all =
             |list: fn(&Placed) -> &[Note]| slices.iter().flat_map(|(_, own)| list(own).to_vec()).collect();
+        let within = format!("{} with the points of {}", cut.place(), record.points_of);
+        let mut findings = clean::checks::findings(&points, side, options.gauge_height());
+        clean::checks::reject(&findings).map_err(|error| error.within(&within))?;
+        let own = |finding: &&Finding| {
+            let known = || findings.iter().any(|other| other.place == finding.place);
+            finding.check == Check::Orientation || finding.check == Check::Gap && !known()
+        };
+        let of_model: Vec<Finding> = model.findings.iter().filter(own).cloned().collect();
+        findings.extend(of_model);
         let placed = Placed {
             points,
+            findings,
             elements: Vec::new(),
             diameter: None,
             elements_alone: false,
@@ -216,8 +231,7 @@ pub fn section(
             ..model.clone()
         };
         let source = format!("{} of slices {file}", cut.place());
-        let within = format!("{} with the points of {}", cut.place(), record.points_of);
-        drawn(file, source, placed, side, &options, Some(record)).map_err(|error| error.within(within))
+        drawn(file, source, placed, &options, Some(record)).map_err(|error| error.within(within))
     };
     whole().map_err(|error| error.within(file))
 }
@@ -225,9 +239,7 @@ pub fn section(
 /// Reads and places one slice, and rejects points that no curve can be drawn through.
 fn slice(name: &str, bytes: &[u8], side: Side, options: &Options) -> Result<Placed> {
     let format = options.format.map_or_else(|| Format::of_file(name), Ok)?;
-    let placed = placed(read::reader::read(bytes, format, options.columns.as_ref())?, side, options)?;
-    clean::checks::reject(&clean::checks::findings(&placed.points, side, options.gauge_height()))?;
-    Ok(placed)
+    placed(read::reader::read(bytes, format, options.columns.as_ref())?, side, options)
 }
 
 /// Rejects slices whose shapes or formats turn or scale them differently.
@@ -255,60 +267,110 @@ struct Placed {
     elements_alone: bool,
     notes: Vec<Note>,
     transform: Transform,
-    /// Findings about the orientation.
-    turned: Vec<Finding>,
+    /// Findings about the points and their orientation; none of them is fatal.
+    findings: Vec<Finding>,
     repairs: Vec<Repaired>,
 }
 
 fn build(file: &str, read: Points, side: Side, options: &Options) -> Result<Measured> {
     let source = format!("{} file {file}", format_title(read.format));
-    drawn(file, source, placed(read, side, options)?, side, options, None)
+    drawn(file, source, placed(read, side, options)?, options, None)
 }
 
 /// Turns the points of a file into profile axes and repairs them.
-fn placed(read: Points, side: Side, options: &Options) -> Result<Placed> {
-    let mut read = match options.section {
-        Some(number) => read.section(number)?,
-        None => read,
-    };
+///
+/// # Errors
+/// All questions that are open, in one error; points that no curve can be drawn through.
+fn placed(mut read: Points, side: Side, options: &Options) -> Result<Placed> {
+    let starts = if read.sections.len() > 1 { read.profiles() } else { Vec::new() };
+    let mut open = ask::of_content(&read, &starts, options);
+    if read.columns.as_ref().is_some_and(|choice| choice.likely.is_none()) {
+        return Err(ask::asked(&open, &read.at, side, true));
+    }
+    match options.section {
+        Some(number) => read = read.section(number)?,
+        // The first of several profiles shows what else has to be asked.
+        None if starts.len() > 1 => {
+            read.sections = starts;
+            read = read.section(1)?;
+        }
+        None => {}
+    }
     let elements_alone = read.at.is_empty();
     options.validate_for(side, read.format, elements_alone)?;
     if elements_alone {
         read.at = fit::elements::points(&read.elements);
     }
-    let (transform, turned) = place::resolve(&read, side, options)?;
+    let points_read = read.at.len();
+    let placing = place::resolve(&mut read, side, options)?;
+    let transform = placing.transform;
     let mut points = transform.points(&read.at);
+    open.extend(placing.open);
+    if placing.wrong_unit.is_some() || !open.is_empty() {
+        if placing.wrong_unit.is_none() {
+            open.extend(ask::of_repairs(&points, side, options));
+        }
+        let error = match placing.wrong_unit {
+            None => ask::asked(&open, &points, side, placing.stated),
+            Some(mut error) => {
+                error.advice +=
+                    &open.iter().map(|question| format!("; and {}", question.choices)).collect::<String>();
+                error
+            }
+        };
+        return Err(error);
+    }
     let repairs = clean::repairs::repair(&mut points, &options.repair);
+    let findings = clean::checks::findings(&points, side, options.gauge_height());
+    ask::reject(&transform.points(&read.at), &findings, side, options)?;
+    let gaps = gaps(&read, &points, &findings, &transform);
     let elements = read.elements.iter().map(|element| transform.element(element)).collect();
-    let (format, points_read, notes) = (read.format, read.at.len(), read.notes);
     let diameter = read.diameter.filter(|_| side == Side::Wheel);
     Ok(Placed {
-        format,
+        format: read.format,
         points_read,
         points,
         elements,
         diameter,
         elements_alone,
-        notes,
+        notes: read.notes,
         transform,
-        turned,
+        findings: findings.into_iter().chain(gaps).chain(placing.findings).collect(),
         repairs,
     })
 }
 
-/// Checks placed points and draws the curve through them.
+/// Returns the findings of rows without values, but for those of gaps that were found by their length.
+fn gaps(read: &Points, points: &[Point], found: &[Finding], transform: &Transform) -> Vec<Finding> {
+    let place = |number: usize| points.iter().find(|point| point.number == number);
+    let made = read.gaps.iter().filter_map(|gap| {
+        // From left to right a gap lies behind the other of its two points.
+        let numbers =
+            if transform.reversed { [gap.after + 1, gap.after] } else { [gap.after, gap.after + 1] };
+        let [before, after] = [place(numbers[0])?, place(numbers[1])?];
+        let known = found.iter().any(|own| own.check == Check::Gap && own.place == before.place());
+        let wide = clean::checks::distance(before, after);
+        let lines = gap.lines;
+        let rows = if lines.0 == lines.1 {
+            format!("line {}", lines.0)
+        } else {
+            format!("lines {} to {}", lines.0, lines.1)
+        };
+        let text = format!("no value in {rows}: no point over {wide:.2} mm up to {}", after.place());
+        (!known).then(|| Finding::gap(before, text))
+    });
+    made.collect()
+}
+
+/// Draws the curve through placed points.
 fn drawn(
     name: &str,
     source: String,
     placed: Placed,
-    side: Side,
     options: &Options,
     cut: Option<CutRecord>,
 ) -> Result<Measured> {
     let Placed { points, elements, elements_alone, .. } = placed;
-    let findings = clean::checks::findings(&points, side, options.gauge_height());
-    clean::checks::reject(&findings)?;
-    let warnings = findings.into_iter().chain(placed.turned).collect();
     let (segments, curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
     let profile = Profile::new(name, source, segments)?;
     let record = Record {
@@ -320,7 +382,7 @@ fn drawn(
         already_inclined: options.already_inclined,
         diameter: placed.diameter,
         repairs: placed.repairs,
-        warnings,
+        warnings: placed.findings,
         curve,
         cut,
     };
@@ -331,6 +393,7 @@ fn format_title(format: Format) -> &'static str {
     match format {
         Format::Text => "text",
         Format::Csv => "CSV",
+        Format::Vampire => "Vampire",
         other => other.title(),
     }
 }

@@ -33,6 +33,13 @@ macro_rules! measured_options {
             $($(#[$of_key])* pub $key: $type,)*
         }
     };
+    // The names of the keys.
+    (keys [$name:ident] $($(#[$of_key:meta])* $key:ident: $type:ty;)*) => {
+        impl $name {
+            /// Names of all options.
+            pub const KEYS: &'static [&'static str] = &[$(stringify!($key)),*];
+        }
+    };
     // The conversion of such a table to the options.
     (method [$name:ident] $($(#[$of_key:meta])* $key:ident: $type:ty;)*) => {
         impl $name {
@@ -51,7 +58,8 @@ macro_rules! measured_options {
             /// Columns of x and z in a text or CSV file: numbers from 1, or names in its first row.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             columns: Option<[$crate::measured::Column; 2]>;
-            /// Section of an .mpt file to use, from 1; if not given, all sections in a row.
+            /// Section of an .mpt file, or profile of a text, CSV or Vampire file, to use, from 1; if not given, all sections in a row
+            /// where they go on from each other.
             #[cfg_attr(feature = "files", schemars(extend("minimum" = 1)))]
             #[serde(default, skip_serializing_if = "Option::is_none")]
             section: Option<usize>;
@@ -118,6 +126,8 @@ measured_options! {
     pub struct Options {}
 }
 
+measured_options! { @keys Options }
+
 /// The point of a file that becomes the origin of the profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "files", derive(schemars::JsonSchema))]
@@ -151,10 +161,22 @@ pub enum Repair {
     DropDuplicates,
     /// Sorts the points between two reversals along the direction across them.
     Sort,
-    /// Drops points that stick out.
+    /// Drops points that stick out, and a short end beyond which the path turns back.
     RemoveSpikes,
     /// Drops points inside a loop.
     CutLoops,
+}
+
+impl Repair {
+    /// Returns the name of the repair in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DropDuplicates => "drop-duplicates",
+            Self::Sort => "sort",
+            Self::RemoveSpikes => "remove-spikes",
+            Self::CutLoops => "cut-loops",
+        }
+    }
 }
 
 /// The kind of curve through the points.
@@ -267,7 +289,11 @@ impl Options {
         let fitted = "a curve through points, not the elements themselves";
         reject_idle(&[
             ("columns", self.columns.is_some() && !table, "a text or CSV file"),
-            ("section", self.section.is_some() && format != Format::MiniProf, "an .mpt file"),
+            (
+                "section",
+                self.section.is_some() && matches!(format, Format::Simpack | Format::Gensys),
+                "a file of several profiles: .mpt, text, CSV or Vampire",
+            ),
             ("along", self.along.is_some(), "an .slcs file"),
             ("angle", self.angle.is_some(), "an .slcw file"),
             ("gauge_height", self.gauge_height.is_some() && wheel, "a rail"),

@@ -4,13 +4,16 @@
 use serde::Serialize;
 
 use super::Format;
-use super::clean::checks::{Finding, no_order, wrong_unit};
+use super::ask::{OpenQuestion, name, wrong_unit};
+use super::clean::checks::{Finding, SAME_POINT, no_order, same};
 use super::options::{NamedOrigin, Options, Origin, Repair};
 use super::read::points::{DesignElement, ElementShape, Point, Points};
 use super::shape::{
-    flange_side, gauge_depth, gauge_side, has_flange_back, head_up, reach, running_head, top,
+    flange_side, gauge_depth, gauge_side, has_flange_back, head_up, outline, reach, running_head, symmetric,
+    top,
 };
 use crate::error::{Error, Result};
+use crate::numerics::interval::Interval;
 use crate::profile::Side;
 
 /// Least number of points that have a shape.
@@ -49,18 +52,34 @@ fn definition(format: Format, side: Side) -> [Option<bool>; 2] {
         (Format::MiniProf, Side::Wheel) => [Some(false), Some(true)],
         (Format::Simpack, _) => [Some(false), Some(true)],
         (Format::Gensys, _) => [Some(true), Some(true)],
+        // Heights of Vampire are up on rails and down on wheels.
+        (Format::Vampire, side) => [Some(false), Some(side == Side::Wheel)],
         (Format::Text | Format::Csv, _) => [None, None],
     }
 }
 
+/// How the points of a file lie, and what that leaves open.
+pub(super) struct Placing {
+    /// The transformation; by the likeliest answers where questions are open.
+    pub transform: Transform,
+    /// Definitions of the format that the shape contradicts.
+    pub findings: Vec<Finding>,
+    /// Questions about the axes.
+    pub open: Vec<OpenQuestion>,
+    /// What is wrong with the unit.
+    pub wrong_unit: Option<Error>,
+    /// Whether the file or an option states the unit.
+    pub stated: bool,
+}
+
 /// Finds the transformation from options, format and shape. An option always decides; without it the definition of the
 /// format decides; the shape decides only what the format leaves open. The findings are definitions that the shape
-/// contradicts, each with the option that would reverse it; they change nothing.
+/// contradicts, each with the option that would reverse it; they change nothing. A closed outline is begun anew at its foot.
 ///
 /// # Errors
-/// A body other than the file's own. Fewer than three points, a width that does not fit the unit, points in no order. An orientation
-/// that neither option, format nor shape decides; the error lists the choices. An origin that the points do not reach.
-pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transform, Vec<Finding>)> {
+/// A body other than the file's own. Fewer than three points, points in no order. An origin that the points do not reach, where nothing
+/// is left open.
+pub(super) fn resolve(points: &mut Points, side: Side, options: &Options) -> Result<Placing> {
     if let Some(body) = points.body.filter(|body| *body != side) {
         let (found, expected) = (format!("a {} profile", name(body)), format!("a {} profile", name(side)));
         return Err(Error::new("type", found, expected, "give the other file"));
@@ -72,89 +91,46 @@ pub fn resolve(points: &Points, side: Side, options: &Options) -> Result<(Transf
         return Err(Error::new(place, found, expected, "give a file with the whole profile"));
     }
     let mut transform = Transform { scale: [1.0; 2], shift: [0.0; 2], reversed: false, steps: Vec::new() };
-    let unit = unit(points, options, &mut transform.steps)?;
+    let unit = unit(points, options, &mut transform.steps);
     transform.scale = [unit; 2];
     let stated = options.unit.is_some() || points.unit.is_some();
-    let wrong = wrong_unit(&transform.points(&points.at), unit, stated);
+    let wrong = wrong_unit(&transform.points(&points.at), points.applied * unit, stated);
     // Further questions are found in the likeliest unit.
-    let unit = wrong.as_ref().map_or(unit, |(_, likeliest)| *likeliest);
+    let unit = wrong.as_ref().map_or(unit, |(_, likeliest)| *likeliest / points.applied);
     transform.scale = [unit; 2];
     let (findings, open) = transform.turn(points, side, options);
-    match (wrong, open.as_slice()) {
-        (Some((mut error, _)), open) => {
-            for question in open {
-                error.advice += &format!("; and {}", question.choices);
-            }
-            return Err(error);
-        }
-        (None, open) => {
-            let placed = transform.points(&points.at);
-            let sorted = open.is_empty() && options.repair.contains(&Repair::Sort);
-            if let Some(error) = no_order(&placed).filter(|_| !sorted) {
-                return Err(error);
-            }
-            if !open.is_empty() {
-                return Err(asked(open, &placed, side, stated));
-            }
-        }
+    let wrong_unit = wrong.map(|(error, _)| error);
+    let placed = transform.points(&points.at);
+    let sorted = open.is_empty() && options.repair.contains(&Repair::Sort);
+    if let Some(error) = no_order(&placed).filter(|_| wrong_unit.is_none() && !sorted) {
+        return Err(error);
     }
-    transform.reverse(&points.at);
-    transform.shift_origin(&points.at, side, options)?;
-    Ok((transform, findings))
+    if outline(&placed).is_some() {
+        transform.begin_at_foot(points, side);
+    } else {
+        transform.reverse(&points.at);
+    }
+    if open.is_empty() && wrong_unit.is_none() {
+        transform.shift_origin(&points.at, side, options)?;
+    }
+    Ok(Placing { transform, findings, open, wrong_unit, stated })
 }
 
-/// A question that neither option, format nor shape answers.
-struct OpenQuestion {
-    what: &'static str,
-    /// What the shape does not show.
-    found: &'static str,
-    choices: String,
-}
-
-/// Returns the error that asks all open questions at once; a shape that looks like the other body comes first.
-fn asked(open: &[OpenQuestion], points: &[Point], side: Side, stated: bool) -> Error {
-    let list = |part: fn(&OpenQuestion) -> &str, between: &str| {
-        open.iter().map(part).collect::<Vec<_>>().join(between)
-    };
-    let mut advice =
-        if open.len() > 1 { "give both options".to_owned() } else { "give the option".to_owned() };
-    if !stated {
-        advice += &format!(", and `unit` unless it is {:.1} mm wide", reach(points).width());
-    }
-    let other = if side == Side::Rail { Side::Wheel } else { Side::Rail };
-    let mut found = list(|question| question.found, "; ");
-    if let Some((_, why)) = head_up(points, other) {
-        found = format!("the shape of a {} ({why}); as a {}: {found}", name(other), name(side));
-        advice = format!("give it as a {}; or {advice}", name(other));
-    }
-    Error::new(
-        list(|question| question.what, ", "),
-        found,
-        list(|question| &question.choices, ", and "),
-        advice,
-    )
-}
-
-fn name(side: Side) -> &'static str {
-    match side {
-        Side::Rail => "rail",
-        Side::Wheel => "wheel",
-    }
-}
-
-/// Returns the length of the file's unit \[mm\].
-fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> Result<f64> {
+/// Returns the length \[mm\] by which coordinates are multiplied.
+fn unit(points: &Points, options: &Options, steps: &mut Vec<Step>) -> f64 {
     let (unit, because) = match (options.unit, points.unit) {
-        (Some(option), Some(stated)) if option.millimetres() != stated => {
-            let expected = "the unit that the format states, mm after reading";
-            return Err(Error::new("unit", option.name(), expected, "delete the option"));
-        }
-        (Some(option), _) => (option.millimetres(), "option `unit`"),
-        (None, Some(stated)) => (stated, "the format"),
-        (None, None) => (1.0, "the default"),
+        (Some(option), _) => (option.millimetres() / points.applied, "option `unit`".to_owned()),
+        (None, Some(stated)) => (
+            stated,
+            match points.unit_line {
+                Some(line) => format!("line {line} of the file"),
+                None => "the format".to_owned(),
+            },
+        ),
+        (None, None) => (1.0, "the default".to_owned()),
     };
-    steps.push(Step { what: "unit", done: format!("{unit} mm"), because: because.into() });
-    Ok(unit)
+    steps.push(Step { what: "unit", done: format!("{unit} mm"), because });
+    unit
 }
 
 /// One of the two questions about the orientation: `mirror` or `flip_z`.
@@ -166,6 +142,11 @@ struct Orientation {
 }
 
 impl Orientation {
+    /// Tells whether neither option nor definition decides.
+    fn is_open(&self) -> bool {
+        self.option.is_none() && self.definition.is_none()
+    }
+
     /// Decides the question; `None` leaves it open.
     fn decide(&self, proof: Option<(bool, String)>, steps: &mut Vec<Step>) -> Option<bool> {
         let (turn, because) = match (self.option, self.definition, proof) {
@@ -223,7 +204,7 @@ impl Orientation {
             ),
         };
         let choices = format!("`{0} = true` ({yes}) or `{0} = false` ({no})", self.what);
-        OpenQuestion { what: self.what, found, choices }
+        OpenQuestion { what: self.what, found: found.to_owned(), choices }
     }
 }
 
@@ -250,8 +231,19 @@ impl Transform {
                 Side::Wheel => flange_side(&upright),
             }
         });
-        let proof = proof.map(|(left, why)| (!left, why));
+        let mut proof = proof.map(|(left, why)| (!left, why));
         findings.extend(mirrored.contradiction(proof.as_ref(), &points.at));
+        if proof.is_none() && turned.is_some() && mirrored.is_open() && side == Side::Rail {
+            let upright = self.points(&points.at);
+            // An origin that is found anew lies on the other side of a mirror image.
+            let own = matches!(
+                options.origin,
+                Some(Origin::Named(NamedOrigin::GaugePoint | NamedOrigin::TapeLine))
+            );
+            let axis = if own { reach(&upright).middle() } else { 0.0 };
+            proof =
+                symmetric(&upright, axis).then(|| (false, "its mirror image is the same profile".to_owned()));
+        }
         let mirror = mirrored.decide(proof, &mut self.steps);
         if mirror == Some(true) {
             self.scale[0] = -self.scale[0];
@@ -304,6 +296,34 @@ impl Transform {
             let because = "the last point lies left of the first".into();
             self.steps.push(Step { what: "order", done: "reversed".into(), because });
         }
+    }
+
+    /// Begins a closed outline at the end that no other body meets: a rail's foot, the inside of a wheel; a point that is there twice
+    /// goes. The material of a rail lies right of the path from there, that of a wheel left of it.
+    fn begin_at_foot(&mut self, points: &mut Points, side: Side) {
+        let at = &mut points.at;
+        if let ([first, .., last], true) = (at.as_slice(), at.len() > LEAST_POINTS)
+            && same(first, last)
+        {
+            at.pop();
+        }
+        let placed = self.points(at);
+        let depth = |p: &Point| if side == Side::Rail { p.z } else { -p.z };
+        let foot = placed.iter().map(depth).fold(f64::INFINITY, f64::min);
+        let lowest = || (0..placed.len()).filter(|&k| depth(&placed[k]) <= foot + SAME_POINT);
+        let middle = Interval::around(lowest().map(|k| placed[k].x)).middle();
+        let off = |k: &usize| (placed[*k].x - middle).abs();
+        let begin = lowest().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        at.rotate_left(begin);
+        self.reversed = outline(&self.points(at)).is_some_and(|area| (area > 0.0) == (side == Side::Rail));
+        if self.reversed {
+            // The path still begins at that point.
+            at.rotate_left(1);
+        }
+        let done =
+            format!("{}begun at {}", if self.reversed { "reversed, " } else { "" }, placed[begin].place());
+        let because = "the points go around a closed outline".into();
+        self.steps.push(Step { what: "order", done, because });
     }
 
     fn shift_origin(&mut self, at: &[Point], side: Side, options: &Options) -> Result<()> {

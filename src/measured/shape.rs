@@ -37,6 +37,22 @@ const OFF_MIDDLE: f64 = 0.15;
 /// Drop \[mm\] from the tip that shows that the flange back was measured.
 const FLANGE_BACK: f64 = 5.0;
 
+/// Largest distance of the two ends of a closed outline, as a multiple of the median distance of neighbours, and as a share of the path.
+const CLOSING: f64 = 3.0;
+const CLOSING_SHARE: f64 = 0.02;
+/// Least mean thickness \[mm\] of what a closed outline encloses. There and back along one face it is far less, around a rail more than 20.
+const THICKNESS: f64 = 5.0;
+/// Share of the height of a closed outline over which its head and its foot are as wide as their widest.
+const OUTLINE_END: f64 = 0.15;
+/// Least ratio of the width of a rail's foot to that of its head; grooved rails have 1.3, others 1.6 and more.
+const BROADER: f64 = 1.2;
+/// Largest distance \[mm\] of two profiles that are the same: the last digit of usual files.
+const SAME_SHAPE: f64 = 1e-3;
+/// Depth \[mm\] below the top of a rail that no wheel reaches: grooves are 47 mm deep.
+const TOUCHED: f64 = 60.0;
+/// Largest sagitta \[mm\] that is taken off that distance: steps of 1 mm on a fillet of 2 mm.
+const LARGEST_SAGITTA: f64 = 0.06;
+
 /// Returns the largest z of the points \[mm\].
 pub(super) fn top(points: &[Point]) -> f64 {
     points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max)
@@ -58,9 +74,88 @@ pub(super) fn head_up(points: &[Point], side: Side) -> Option<(bool, String)> {
     }
 }
 
+/// Returns the area \[mm²\] that a closed outline encloses, positive if the path goes around it counter-clockwise; `None` for a path that
+/// does not return to its beginning or encloses next to nothing.
+pub(super) fn outline(points: &[Point]) -> Option<f64> {
+    let (first, last) = (*points.first()?, *points.last()?);
+    let mut steps: Vec<f64> = points.windows(2).map(|pair| distance(pair[0], pair[1])).collect();
+    let length: f64 = steps.iter().sum();
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    let next = points.iter().skip(1).chain([&first]);
+    // About the first point, so that far origins cost no digits.
+    let area = |(a, b): (&Point, &Point)| {
+        0.5 * ((a.x - first.x) * (b.z - first.z) - (b.x - first.x) * (a.z - first.z))
+    };
+    let area: f64 = points.iter().zip(next).map(area).sum();
+    let closed = distance(first, last) <= (CLOSING * *median).min(CLOSING_SHARE * length);
+    (closed && 2.0 * area.abs() >= THICKNESS * length).then_some(area)
+}
+
+/// Returns whether the foot of a closed outline is down, with the reason: the foot is wider than the head.
+fn wider_end_down(points: &[Point]) -> Option<(bool, String)> {
+    let heights = Interval::around(points.iter().map(|p| p.z));
+    let wide = |from: f64, to: f64| {
+        let part = Interval::new(heights.at(from), heights.at(to));
+        Interval::around(points.iter().filter(|p| part.contains(p.z)).map(|p| p.x)).width()
+    };
+    let (low, high) = (wide(0.0, OUTLINE_END), wide(1.0 - OUTLINE_END, 1.0));
+    let (narrow, broad) = (low.min(high), low.max(high));
+    (broad >= BROADER * narrow && heights.width() >= SIDE_FACE).then(|| {
+        (low > high, format!("closed outline: the foot is {broad:.1} mm wide, the head {narrow:.1} mm"))
+    })
+}
+
+/// Returns whether the mirror image of an upright rail about x = `axis` is the same rail down to [`TOUCHED`], to [`SAME_SHAPE`] and the
+/// sagitta of its polygon.
+pub(super) fn symmetric(points: &[Point], axis: f64) -> bool {
+    let n = points.len();
+    if n < 3 {
+        return false;
+    }
+    let around = outline(points).is_some();
+    let at = |k: usize| points[k % n];
+    let edges = if around { n } else { n - 1 };
+    let off = |p: &Point, k: usize| {
+        let (a, b) = (at(k), at(k + 1));
+        let [u, w] = [b.x - a.x, b.z - a.z];
+        let square = u * u + w * w;
+        let share = if square > 0.0 { ((p.x - a.x) * u + (p.z - a.z) * w) / square } else { 0.0 };
+        let share = share.clamp(0.0, 1.0);
+        (p.x - a.x - share * u).hypot(p.z - a.z - share * w)
+    };
+    // A quarter of the distance of a point from the chord between its neighbours is the sagitta of equal steps.
+    let sagitta = |k: usize| {
+        let bend = |k: usize| {
+            let (a, p, b) = (at(k + n - 1), at(k), at(k + 1));
+            let chord = distance(a, b);
+            let cross = (b.x - a.x) * (p.z - a.z) - (b.z - a.z) * (p.x - a.x);
+            if chord > 0.0 { cross.abs() / chord } else { 0.0 }
+        };
+        (0.25 * bend(k).max(bend(k + 1))).min(LARGEST_SAGITTA)
+    };
+    let image = |p: &Point| Point { x: 2.0 * axis - p.x, ..*p };
+    let nearest = |p: &Point| (0..edges).min_by(|&a, &b| off(p, a).total_cmp(&off(p, b))).unwrap_or(0);
+    // The images follow the path backwards: the nearest edge of one is near that of the last one.
+    let mut edge = nearest(&image(&points[0]));
+    let lowest = top(points) - TOUCHED;
+    points.iter().map(image).all(|p| {
+        loop {
+            let ahead = (1..=3).flat_map(|step| [edge + step, edge + edges - step]).map(|k| k % edges);
+            match ahead.min_by(|&a, &b| off(&p, a).total_cmp(&off(&p, b))) {
+                Some(better) if off(&p, better) < off(&p, edge) => edge = better,
+                _ => return p.z < lowest || off(&p, edge) <= SAME_SHAPE + sagitta(edge),
+            }
+        }
+    })
+}
+
 /// Returns whether a rail's foot is down, with the reason. An upright rail ends in two side faces that fall outwards,
 /// whatever grooves are between them; or its outline bulges upwards throughout.
 fn foot_down(points: &[Point]) -> Option<(bool, String)> {
+    if outline(points).is_some() {
+        return wider_end_down(points);
+    }
     let falls = [end_fall(points, false)?, end_fall(points, true)?];
     let face = |fall: f64| fall.abs() >= FACE_SINE;
     if falls.iter().all(|&fall| face(fall)) {

@@ -30,7 +30,23 @@ pub fn points(points: &[[f64; 2]], format: Format, side: Side, name: &str) -> St
             format!("# {name}: x to the field side, z up, mm\n{}", rows(points.iter().copied(), " "))
         }
         Format::Csv => format!("x_mm,z_mm\n{}", rows(points.iter().copied(), ",")),
+        Format::Vampire => vampire(points, side, &name),
     }
+}
+
+/// Returns a Vampire file of both sides: a wheel's datum is its origin, a rail's gauge point becomes its origin when it is read.
+fn vampire(points: &[[f64; 2]], side: Side, name: &str) -> String {
+    let (head, out) = match side {
+        Side::Rail => ("RAILPROFILE\n{}\nGAUGEPOINT EUROPEAN\nGAUGE 1435\n", 717.5),
+        Side::Wheel => ("WHEELPROFILE\n{}\nTREADDATUM EUROPEAN\nFLANGEBACK 1360\n", 750.0),
+    };
+    let mut text = head.replace("{}", &name.chars().take(80).collect::<String>());
+    for [x, z] in points {
+        let (y, z) = (out + x, if side == Side::Rail { *z } else { 0.0 - z });
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{} {z} {y} {z}", -y);
+    }
+    text
 }
 
 /// Default distance \[mm\] of points along a drawn profile: that of hand-held instruments.
@@ -46,7 +62,7 @@ pub fn profile(
     (measured, step): (Option<&[[f64; 2]]>, Option<f64>),
     (format, side): (Format, Option<Side>),
 ) -> Result<(String, usize)> {
-    let own_axes = matches!(format, Format::MiniProf | Format::Simpack);
+    let own_axes = matches!(format, Format::MiniProf | Format::Simpack | Format::Vampire);
     if side.is_none() && own_axes {
         let expected = format!("the body, which sets the axes of {}", format.title());
         return Err(Error::new("side", "none", expected, "give rail or wheel"));

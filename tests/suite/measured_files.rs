@@ -12,6 +12,7 @@ use wheelrail::{Error, Profile, Result, Side, standards};
 mod curves;
 mod questions;
 mod slices;
+mod texts;
 
 /// Returns the bytes of a sample in tests/profiles.
 fn bytes(name: &str) -> Vec<u8> {
@@ -82,7 +83,12 @@ fn every_rail_file_becomes_the_same_right_hand_rail() -> Result<()> {
 
 #[test]
 fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
-    let error = measured("new-style.ban", "").err().map(|e| e.to_string()).unwrap_or_default();
+    let worn =
+        String::from_utf8_lossy(&bytes("new-style.ban")).replace("-30.3950   -5.7330", "-30.3950   -5.8330");
+    let error = profile("new-style.ban", worn.as_bytes(), Side::Rail, &Options::default())
+        .map(drop)
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("mirror = true") && error.contains("mirror = false"), "{error}");
     // SIMPACK's definition decides what the symmetric head leaves open. Only the single side face decides for rail.csv.
     assert!(measured("rail.prr", "").is_ok_and(|m| m.record.transform.steps.len() == 3));
@@ -91,9 +97,9 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     let wheel = bytes("wheel.prw");
     assert!(profile("wheel.prw", &wheel, Side::Rail, &Options::default()).is_err());
     for (name, options, part) in [
-        ("rail.csv", "columns = [2, 3]", "\"m\" or"),
+        ("rail.csv", "columns = [2, 3]", "\"m\" would do"),
         ("rail.csv", "unit = 'm'", "columns"),
-        ("wheel.prw", "unit = 'm'", "unit"),
+        ("wheel.prw", "unit = 'mm'", "unit"),
         ("wheel.prw", "origin = 'gauge-point'", "origin"),
         ("sections.mpt", "mirror = true", "back"),
         ("sections.mpt", "section = 3", "section"),

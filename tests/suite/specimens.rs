@@ -14,7 +14,19 @@ fn every_kind_reads_back_in_every_format_as_it_was_measured() -> Result<()> {
             let specimen = Specimen::new(kind, instrument)?;
             let read = specimen.measured(format)?;
             let back: Vec<[f64; 2]> = read.points.iter().map(|p| p.xz()).collect();
-            assert_eq!(back, specimen.points, "{kind:?} {format:?} seed {seed}");
+            if format != Format::Vampire {
+                assert_eq!(back, specimen.points, "{kind:?} {format:?} seed {seed}");
+                continue;
+            }
+            // Vampire's heads set the origin: the points are shifted all alike.
+            let shift = [0, 1].map(|k| back[0][k] - specimen.points[0][k]);
+            assert_eq!(back.len(), specimen.points.len());
+            for (p, q) in back.iter().zip(&specimen.points) {
+                assert!(
+                    (0..2).all(|k| (p[k] - q[k] - shift[k]).abs() < 1e-9),
+                    "{kind:?} seed {seed}: {p:?} {q:?}"
+                );
+            }
         }
     }
     Ok(())

@@ -3,11 +3,11 @@
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use wheelrail::case::Doubt;
-use wheelrail::measured::Finding;
+use wheelrail::measured::{self, Finding, Surface};
 use wheelrail::{Error, ErrorKind};
 
 /// Texts of scenes and of the command line, each with the text that messages in Python have instead.
-const WORDS: [(&str, &str); 13] = [
+const WORDS: [(&str, &str); 12] = [
     ("see `wheelrail schema` and the manual, src/docs/scene.md", "see `help(wheelrail)`"),
     (
         "see `wheelrail profile list`, or give `file` or `segments`",
@@ -24,7 +24,6 @@ const WORDS: [(&str, &str); 13] = [
         "give the radius there, or move the profile by `shifted`",
     ),
     ("wheel.radius", "radius"),
-    ("repair = [\"", "repair=[\""),
     ("give it as the wheel", "make it by `wheelrail.wheel`"),
     ("give it as the rail", "make it by `wheelrail.rail`"),
 ];
@@ -47,7 +46,9 @@ impl<T> OrRaise<T> for wheelrail::Result<T> {
 
 /// Says a text of the library in Python's words.
 fn spoken(text: &str) -> String {
-    WORDS.iter().fold(text.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
+    WORDS
+        .iter()
+        .fold(measured::spoken(text, Surface::Keywords), |text, (theirs, ours)| text.replace(theirs, ours))
 }
 
 /// Names the argument that a key of a scene stands for. A place in a scene begins with the scene, and stays.

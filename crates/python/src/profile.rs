@@ -258,7 +258,7 @@ impl Profile {
         to_python(py, &segments)
     }
 
-    /// Write the profile as the text of a file: points in the `format` "miniprof", "simpack", "gensys", "text" or "csv", or segments
+    /// Write the profile as the text of a file: points in the `format` "miniprof", "simpack", "gensys", "text", "csv" or "vampire", or segments
     /// as "toml".
     ///
     /// The points are the measured ones, or `step` mm apart along the curve (0.2 for a drawn profile). `side` is needed for the
@@ -425,8 +425,8 @@ fn damaged(error: postcard::Error) -> PyErr {
     exception(Error::new("profile", error.to_string(), expected, "pickle it anew"))
 }
 
-/// Read a profile from a file: measured points (MiniProf .ban .whl .mpt, SIMPACK .prr .prw, GENSYS .rail .wheel, slices .slcs
-/// .slcw, text, CSV), or segments (.toml, .json).
+/// Read a profile from a file: measured points (MiniProf .ban .whl .mpt, SIMPACK .prr .prw, GENSYS .rail .wheel, Vampire .rai .whe,
+/// slices .slcs .slcw, text, CSV), or segments (.toml, .json).
 ///
 /// `side` is "rail" or "wheel", where the file does not say so. The other options are the keys of a measured file in a
 /// scene, with the same words and defaults: format, columns, section, along, angle, mirror, flip_z, unit, origin,

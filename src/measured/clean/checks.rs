@@ -1,14 +1,12 @@
 //! Checks measured points in profile axes, from left to right. Each finding names its place in the file.
 
-use std::ops::RangeInclusive;
-
 use serde::Serialize;
 
 use super::loops;
 use crate::error::{Error, Result};
+use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
-use crate::measured::shape::{gauge_depth, has_flange_back, reach};
-use crate::measured::unit::Unit;
+use crate::measured::shape::{gauge_depth, has_flange_back};
 use crate::profile::Side;
 
 /// Distance \[mm\] below which two points are one: a nanometre is less than any instrument or file resolves.
@@ -27,12 +25,6 @@ const NEIGHBOURHOOD: usize = 10;
 const GAP_RATIO: f64 = 10.0;
 /// Least length of a gap \[mm\]: the length of a contact patch.
 const GAP: f64 = 5.0;
-/// Widths \[mm\] that a profile may have. Other widths mean a wrong unit (0.14: metres; 5500: thousandths of an inch).
-const WIDTHS: RangeInclusive<f64> = 5.0..=500.0;
-/// Least width \[mm\] of a profile whose unit nothing states: rails and wheels in inches have 2.8 to 6, in cm 7 to 14.
-const PLAIN_WIDTH: f64 = 20.0;
-/// Widths \[mm\] of whole rail heads and wheels.
-const USUAL_WIDTHS: RangeInclusive<f64> = 60.0..=150.0;
 /// Least share of the points at which the path of points in no order turns back; a shuffled path does at every second one.
 const NO_ORDER: f64 = 0.1;
 
@@ -84,51 +76,35 @@ impl Finding {
         Self::new(Check::Orientation, first, found)
     }
 
+    /// Makes the finding of rows without values behind a point.
+    pub(in crate::measured) fn gap(before: &Point, found: String) -> Self {
+        Self::new(Check::Gap, before, found)
+    }
+
+    /// Returns the repair that may mend the fault; `None` if none does.
+    pub(in crate::measured) fn repair(&self) -> Option<Repair> {
+        match self.check {
+            Check::Duplicate => Some(Repair::DropDuplicates),
+            Check::OutOfOrder | Check::ZigZag => Some(Repair::Sort),
+            Check::Spike | Check::TurnsBack => Some(Repair::RemoveSpikes),
+            Check::Loop => Some(Repair::CutLoops),
+            Check::Gap | Check::MissingSideFace | Check::Orientation => None,
+        }
+    }
+
     fn expectation(&self) -> (&'static str, &'static str) {
         match self.check {
-            Check::Duplicate => ("different points", "delete one, or allow repair = [\"drop-duplicates\"]"),
+            Check::Duplicate => ("different points", "delete one, or allow `repair = [\"drop-duplicates\"]`"),
             Check::OutOfOrder | Check::ZigZag => {
-                ("points in order along the profile", "put them in order, or allow repair = [\"sort\"]")
+                ("points in order along the profile", "put them in order, or allow `repair = [\"sort\"]`")
             }
-            Check::Spike => ("points near the curve", "delete it, or allow repair = [\"remove-spikes\"]"),
-            Check::Loop => ("a curve that does not cross itself", "allow repair = [\"cut-loops\"]"),
+            Check::Spike => ("points near the curve", "delete it, or allow `repair = [\"remove-spikes\"]`"),
+            Check::Loop => ("a curve that does not cross itself", "allow `repair = [\"cut-loops\"]`"),
             Check::TurnsBack => ("a path that ends where the profile does", "delete what lies beyond it"),
             Check::Gap | Check::MissingSideFace => ("a complete profile", "measure it"),
             Check::Orientation => ("an upright right-hand profile", "correct `mirror` or `flip_z`"),
         }
     }
-}
-
-/// Returns the error of points whose width in a unit \[mm\] means that the unit is wrong, and the length \[mm\] of the unit that is
-/// likeliest meant; `stated` tells whether the file or an option names the unit. `None` for a possible width.
-pub(in crate::measured) fn wrong_unit(points: &[Point], unit: f64, stated: bool) -> Option<(Error, f64)> {
-    let wide = reach(points).width();
-    if WIDTHS.contains(&wide) && (stated || wide >= PLAIN_WIDTH) {
-        return None;
-    }
-    let as_if = |other: &Unit| wide / unit * other.millimetres();
-    let mut fitting: Vec<Unit> = Unit::ALL
-        .into_iter()
-        .filter(|other| other.millimetres() != unit && WIDTHS.contains(&as_if(other)))
-        .collect();
-    fitting.sort_by_key(|other| !USUAL_WIDTHS.contains(&as_if(other)));
-    let names: Vec<_> = fitting.iter().map(|other| format!("\"{}\"", other.name())).collect();
-    let advice = match names.len() {
-        0 => "give another file".to_owned(),
-        _ => format!("give the right `unit`: {} would do", names.join(" or ")),
-    };
-    let expected = if WIDTHS.contains(&wide) {
-        "60 to 150 mm, as rails and wheels have, or a `unit`"
-    } else {
-        "5 to 500 mm"
-    };
-    let error = Error::new("unit", format!("a width of {} mm", shown(wide)), expected, advice);
-    Some((error, fitting.first().map_or(unit, |likeliest| likeliest.millimetres())))
-}
-
-/// Returns a length to six digits, for messages.
-fn shown(length: f64) -> f64 {
-    format!("{length:.5e}").parse().unwrap_or(length)
 }
 
 /// Returns the error of points in no order at all, whose shape says nothing.

@@ -7,7 +7,7 @@ use super::loops;
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
 
-/// Largest loop that `cut-loops` cuts, as a share of the whole path. A larger loop is no slip of the probe, and
+/// Largest loop that `cut-loops` cuts, and largest overhang at an end that `remove-spikes` does, as a share of the whole path. A larger loop is no slip of the probe, and
 /// which of its parts is the profile cannot be told.
 const LARGEST_LOOP: f64 = 0.1;
 /// Most places that the record lists; the count is always complete.
@@ -36,7 +36,7 @@ pub fn repair(points: &mut Vec<Point>, allowed: &[Repair]) -> Vec<Repaired> {
             let now = match repair {
                 Repair::DropDuplicates => drop_duplicates(points),
                 Repair::Sort => sort(points),
-                Repair::RemoveSpikes => remove_spikes(points),
+                Repair::RemoveSpikes => [remove_spikes(points), cut_overhang(points)].concat(),
                 Repair::CutLoops => cut_loops(points),
             };
             if now.is_empty() {
@@ -99,6 +99,18 @@ fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize 
 fn remove_spikes(points: &mut Vec<Point>) -> Vec<Point> {
     let at: Vec<usize> = spikes(points).iter().map(|spike| spike.at).collect();
     drop_all(points, |k| at.binary_search(&k).is_ok())
+}
+
+/// Drops what lies beyond the only place where the path turns back, if it is short.
+fn cut_overhang(points: &mut Vec<Point>) -> Vec<Point> {
+    let [fold] = folds(points)[..] else { return Vec::new() };
+    let (at, last) = (fold.from, points.len() - 1);
+    let length = |range: std::ops::RangeInclusive<usize>| -> f64 {
+        points[range].windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
+    };
+    let beyond = if at < last - at { 0..=at } else { at..=last };
+    let short = length(beyond.clone()) <= LARGEST_LOOP * length(0..=last);
+    drop_all(points, |k| fold.from == fold.to && short && k != at && beyond.contains(&k))
 }
 
 fn cut_loops(points: &mut Vec<Point>) -> Vec<Point> {

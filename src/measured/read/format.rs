@@ -17,15 +17,18 @@ pub enum Format {
     Simpack,
     /// GENSYS: `.rail`, `.wheel`.
     Gensys,
-    /// Columns separated by white space.
+    /// Columns separated by white space; `.rpr` and `.wpr` of multibody programs are such under a head.
     Text,
     /// Columns separated by commas or semicolons.
     Csv,
+    /// Vampire: `.rai`, `.whe`.
+    Vampire,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 5] = [Self::MiniProf, Self::Simpack, Self::Gensys, Self::Text, Self::Csv];
+    pub const ALL: [Self; 6] =
+        [Self::MiniProf, Self::Simpack, Self::Gensys, Self::Text, Self::Csv, Self::Vampire];
 
     /// Returns the format that a file's extension stands for. Upper and lower case are the same.
     ///
@@ -48,8 +51,8 @@ impl Format {
     pub fn body_of_file(name: &str) -> Option<Side> {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_lowercase();
         match extension.as_str() {
-            "ban" | "prr" | "rail" | "slcs" => Some(Side::Rail),
-            "whl" | "prw" | "wheel" | "slcw" => Some(Side::Wheel),
+            "ban" | "prr" | "rail" | "slcs" | "rai" | "rpr" => Some(Side::Rail),
+            "whl" | "prw" | "wheel" | "slcw" | "whe" | "wpr" => Some(Side::Wheel),
             _ => None,
         }
     }
@@ -60,8 +63,9 @@ impl Format {
             Self::MiniProf => &["ban", "whl", "mpt"],
             Self::Simpack => &["prr", "prw"],
             Self::Gensys => &["rail", "wheel"],
-            Self::Text => &["txt", "dat", "xy", "asc"],
+            Self::Text => &["txt", "dat", "xy", "asc", "rpr", "wpr"],
             Self::Csv => &["csv"],
+            Self::Vampire => &["rai", "whe"],
         }
     }
 
@@ -73,6 +77,7 @@ impl Format {
             Self::Gensys => "gensys",
             Self::Text => "text",
             Self::Csv => "csv",
+            Self::Vampire => "vampire",
         }
     }
 
@@ -84,6 +89,7 @@ impl Format {
             Self::Gensys => "GENSYS",
             Self::Text => "a plain text file",
             Self::Csv => "a CSV file",
+            Self::Vampire => "Vampire",
         }
     }
 }

@@ -2,10 +2,14 @@
 //! own.
 
 mod columns;
+mod dialect;
 pub mod format;
+mod head;
 mod miniprof;
 pub mod points;
 pub mod reader;
 pub mod scan;
 mod simpack;
 pub mod slices;
+mod table;
+mod vampire;

@@ -5,6 +5,8 @@ use serde::Serialize;
 use super::scan::{Line, last_place};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measured::Format;
+use crate::measured::column::Column;
+use crate::numerics::interval::Interval;
 use crate::profile::Side;
 
 /// Most points of one file. A profile of 200 mm would have a point every 0.2 µm; a file with more points is not a profile.
@@ -100,7 +102,43 @@ pub struct Points {
     pub diameter: Option<f64>,
     /// Notes on oddities.
     pub notes: Vec<Note>,
+    /// Length \[mm\] of the file's unit by which the coordinates were multiplied already; 1 if they were not.
+    pub applied: f64,
+    /// Line of a table's head that states the unit; `None` for other formats, and where it states none.
+    pub unit_line: Option<usize>,
+    /// Rows without values between points.
+    pub gaps: Vec<Gap>,
+    /// The columns of a table that was read by its likeliest two, for want of an option.
+    pub columns: Option<ColumnChoice>,
 }
+
+/// Rows of a file that have no value, between two of its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Gap {
+    /// Number of the point before them.
+    pub after: usize,
+    /// The first and the last of these lines.
+    pub lines: (usize, usize),
+}
+
+/// The columns of a table, of which two are to be chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ColumnChoice {
+    /// Number of columns.
+    pub count: usize,
+    /// Their names; none without a row of names.
+    pub names: Vec<String>,
+    /// Line of the first row.
+    pub line: usize,
+    /// The two by which the table was read, where their names or the others tell them; `None` where it is any two.
+    pub likely: Option<[Column; 2]>,
+}
+
+/// Largest distance between the end of one section and the beginning of the next one of a profile, as a share of the whole file's
+/// reach; and the least share of a section's reach that lies within the previous ones if it is a profile of its own.
+const APART: f64 = 0.5;
+/// Least share of the reach of the previous sections that a section has if it may be a profile of its own.
+const PIECE: f64 = 0.25;
 
 impl Points {
     pub(in crate::measured) fn new(format: Format, unit: Option<f64>) -> Self {
@@ -113,7 +151,55 @@ impl Points {
             elements: Vec::new(),
             diameter: None,
             notes: Vec::new(),
+            applied: 1.0,
+            unit_line: None,
+            gaps: Vec::new(),
+            columns: None,
         }
+    }
+
+    /// Begins a section with the next point.
+    pub(in crate::measured) fn begin_section(&mut self) {
+        if self.sections.last() != Some(&self.at.len()) {
+            self.sections.push(self.at.len());
+        }
+    }
+
+    /// Returns the indices at which profiles begin: sections that go on where the previous one ends belong to one profile.
+    pub(in crate::measured) fn profiles(&self) -> Vec<usize> {
+        let whole = Self::reach(&self.at);
+        let size = whole[0].width().max(whole[1].width());
+        let mut out = vec![0];
+        let first = self.sections.get(1).copied().unwrap_or(self.at.len());
+        let mut before = Self::reach(&self.at[..first]);
+        for (k, &from) in self.sections.iter().enumerate().skip(1) {
+            let next = self.sections.get(k + 1).copied().unwrap_or(self.at.len());
+            let own = Self::reach(&self.at[from..next]);
+            let (last, begin) = (self.at[from - 1], self.at[from]);
+            let apart = (begin.x - last.x).hypot(begin.z - last.z) > APART * size;
+            let larger = |of: &[Interval; 2]| of[0].width().max(of[1].width());
+            let whole = larger(&own) > PIECE * larger(&before);
+            let within = (0..2).all(|k| {
+                let least = before[k].width().min(own[k].width());
+                before[k].cut(own[k]).width() >= APART * least
+            });
+            if apart || whole && within {
+                out.push(from);
+                before = own;
+            } else {
+                before = [before[0].hull(own[0]), before[1].hull(own[1])];
+            }
+        }
+        out
+    }
+
+    fn reach(at: &[Point]) -> [Interval; 2] {
+        [Interval::around(at.iter().map(|p| p.x)), Interval::around(at.iter().map(|p| p.z))]
+    }
+
+    /// Joins the sections that belong to one profile.
+    pub(in crate::measured) fn join_sections(&mut self) {
+        self.sections = self.profiles();
     }
 
     pub(in crate::measured) fn push(&mut self, line: Line, [x, z]: [f64; 2], weight: f64) -> Result<()> {
@@ -171,6 +257,8 @@ impl Points {
             return Err(Error::new("section", number.to_string(), expected, "choose one of the file's"));
         };
         let to = self.sections.get(k + 1).copied().unwrap_or(self.at.len());
+        let numbers = from..to;
+        self.gaps.retain(|gap| numbers.contains(&gap.after));
         self.at = self.at[from..to].to_vec();
         self.sections = vec![0];
         Ok(self)

@@ -2,7 +2,7 @@
 
 use super::format::Format;
 use super::points::Points;
-use super::{columns, miniprof, scan, simpack};
+use super::{columns, miniprof, scan, simpack, table, vampire};
 use crate::error::Result;
 use crate::measured::column::Column;
 
@@ -16,6 +16,7 @@ pub fn read(bytes: &[u8], format: Format, free: Option<&[Column; 2]>) -> Result<
         Format::MiniProf => miniprof::read(&text),
         Format::Simpack => simpack::read(&text),
         Format::Gensys => columns::read_gensys(&text),
-        Format::Text | Format::Csv => columns::read_table(&text, format, free),
+        Format::Text | Format::Csv => table::read_table(&text, format, free),
+        Format::Vampire => vampire::read(&text),
     }
 }

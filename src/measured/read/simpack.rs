@@ -248,6 +248,7 @@ impl<'a> Keys<'a> {
     fn turn_and_scale(&self, points: &mut Points) -> Result<()> {
         let signs = [self.flag("mirror.y")?, self.flag("mirror.z")?].map(|on| if on { -1.0 } else { 1.0 });
         let unit = self.length_unit()?;
+        points.applied = unit;
         for point in &mut points.at {
             (point.x, point.z) = (signs[0] * point.x * unit, signs[1] * point.z * unit);
         }

@@ -13,10 +13,15 @@
 //!
 //! `!`, `%` and `"` begin a comment, and a group of values may be spread over lines. What follows the last value of a
 //! group on its line is a comment, too.
+//!
+//! A list may also be no more than a position and a file in each line, in either order and with any separator, under a line that has
+//! the unit of the positions: `mm`, `m` or `km`, of wheels `rad` or `deg`, alone or in the brackets of a title.
 
+use super::dialect::is_numeric;
 use super::points::Note;
 use super::scan::{self, Line, clipped, is_number, unquoted};
 use crate::error::{Error, ErrorKind, Result};
+use crate::measured::unit::Unit;
 use crate::profile::Side;
 
 /// Most slices of one file.
@@ -69,6 +74,10 @@ impl SliceList {
     /// Anything that is not of the grammar, with its line; positions that do not ascend; perturbations.
     pub fn read(bytes: &[u8], side: Side) -> Result<Self> {
         let text = scan::text(bytes)?;
+        if let Some(slices) = plain_list(&text, side)? {
+            check_positions(&slices, side)?;
+            return Ok(Self { side, slices, approximated: false, notes: Vec::new() });
+        }
         let mut groups = Groups::new(&text);
         let first = groups.next("offset and scale of the positions", 2)?;
         let (offset, scale) = (first.number(0, "an offset")?, first.number(1, "a scale")?);
@@ -108,6 +117,98 @@ impl SliceList {
         }
         Ok(Self { side, slices, approximated, notes })
     }
+}
+
+/// Reads a list of positions and files alone; `None` for a list in CONTACT's grammar, which begins with two numbers.
+///
+/// # Errors
+/// No unit before the first row; a row that is not a position and a file.
+fn plain_list(text: &str, side: Side) -> Result<Option<Vec<ListedSlice>>> {
+    let rows: Vec<Line> = scan::lines(text).filter(|line| !line.text.is_empty()).collect();
+    let is_number = |word: &str| is_numeric(word);
+    let contact =
+        |line: &&Line| without_comment(**line).text.split_whitespace().next().is_some_and(is_number);
+    let Some(first) = rows.iter().position(|line| position_and_file(without_comment(*line).text).is_some())
+    else {
+        return Ok(None);
+    };
+    if rows[..first].iter().any(|line| contact(&line)) {
+        return Ok(None);
+    }
+    let Some(unit) = rows[..first].iter().find_map(|line| position_unit(line.text, side)) else {
+        let found = "positions without a unit";
+        let (expected, advice) = match side {
+            Side::Rail => (
+                "mm, m or km before them, or CONTACT's list",
+                "put `m`, `mm` or `km` on a line of its own before this one",
+            ),
+            Side::Wheel => (
+                "rad or deg before them, or CONTACT's list",
+                "put `rad` or `deg` on a line of its own before this one",
+            ),
+        };
+        return Err(rows[first].error(found, expected, advice));
+    };
+    let mut slices = Vec::new();
+    for line in rows[first..].iter().map(|line| without_comment(*line)).filter(|line| !line.text.is_empty()) {
+        let Some((position, file)) = position_and_file(line.text) else {
+            return Err(line.error(line.text, "a position and a file", "correct or delete the line"));
+        };
+        if slices.len() == MOST_SLICES {
+            let error =
+                line.error("one more slice", format!("{MOST_SLICES} slices at most"), "thin them out");
+            return Err(error.of_kind(ErrorKind::Limit));
+        }
+        let at = unit * line.number(&position.replace('\u{2212}', "-"), "a position")?;
+        slices.push(ListedSlice { at, file: file.into(), features: Vec::new(), line: line.number });
+    }
+    Ok(Some(slices))
+}
+
+/// Returns the length \[mm or rad\] of the unit that a line of a plain list names, alone or in brackets.
+fn position_unit(text: &str, side: Side) -> Option<f64> {
+    let marks = |c: char| c.is_whitespace() || "[](){}!%#\",;:=_".contains(c);
+    text.split(marks).find_map(|word| match (side, word.to_lowercase().as_str()) {
+        (Side::Rail, "km") => Some(1e6),
+        (Side::Rail, word) => Unit::named(word).map(Unit::millimetres),
+        (Side::Wheel, "rad") => Some(1.0),
+        (Side::Wheel, "deg" | "°") => Some(std::f64::consts::PI / 180.0),
+        _ => None,
+    })
+}
+
+/// Splits a line into a position and the name of a file, in either order; `None` if it has other words.
+pub(super) fn position_and_file(text: &str) -> Option<(&str, &str)> {
+    // A comma before a digit is decimal.
+    let between = |c: char| c.is_whitespace() || c == ';' || c == ',';
+    let decimal =
+        |at: usize| text[at..].starts_with(',') && text[at + 1..].starts_with(|c: char| c.is_ascii_digit());
+    let file = |text: &'_ str| -> Option<(usize, usize)> {
+        // A name ends with its extension; what follows it is a comment.
+        let quoted = text.starts_with(['\'', '"']).then(|| text[1..].find(['\'', '"'])).flatten();
+        let (from, to) = match quoted {
+            Some(end) => (1, 1 + end),
+            None => {
+                let dot = text.rfind('.')?;
+                (0, text[dot..].find(between).map_or(text.len(), |end| dot + end))
+            }
+        };
+        let extension = text[from..to].rsplit_once('.').map_or("", |(_, extension)| extension);
+        let named = extension.starts_with(|c: char| c.is_alphabetic()) && !is_numeric(&text[from..to]);
+        named.then_some((from, to))
+    };
+    let ends = text.char_indices().filter(|(at, c)| between(*c) && !decimal(*at)).map(|(at, _)| at);
+    for at in ends {
+        let (head, rest) = (text[..at].trim(), text[at..].trim_start_matches(between));
+        if is_numeric(head)
+            && let Some((from, to)) = file(rest)
+        {
+            return Some((head, &rest[from..to]));
+        }
+    }
+    let (from, to) = file(text)?;
+    let position = text[to..].trim_matches(|c| between(c) || c == '\'' || c == '"');
+    is_numeric(position).then(|| (position, &text[from..to]))
 }
 
 /// Reads whether the method of interpolation approximates, with a note that sections do not use the method. Refuses perturbations.

@@ -17,6 +17,16 @@ pub use en13715::{PATTERN as EN_13715_NAMES, SOURCE as EN_13715_SOURCE};
 #[derive(Debug, Deserialize)]
 struct RailFile {
     rails: BTreeMap<String, RailData>,
+    former_names: BTreeMap<String, FormerName>,
+}
+
+/// The name that a rail had before EN 13674.
+#[derive(Debug, Deserialize)]
+struct FormerName {
+    /// Its name today.
+    name: String,
+    /// Where it had the former one.
+    source: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -66,8 +76,9 @@ struct WheelData {
 }
 
 // The two files are compiled into the program, and the tests read every entry: they cannot fail to parse.
-static RAILS: LazyLock<BTreeMap<String, RailData>> = LazyLock::new(|| {
-    serde_json::from_str::<RailFile>(include_str!("rails.json")).map(|file| file.rails).unwrap_or_default()
+static RAILS: LazyLock<RailFile> = LazyLock::new(|| {
+    let none = |_| RailFile { rails: BTreeMap::new(), former_names: BTreeMap::new() };
+    serde_json::from_str(include_str!("rails.json")).unwrap_or_else(none)
 });
 static WHEELS: LazyLock<BTreeMap<String, WheelData>> = LazyLock::new(|| {
     serde_json::from_str::<WheelFile>(include_str!("wheels.json")).map(|file| file.wheels).unwrap_or_default()
@@ -75,7 +86,12 @@ static WHEELS: LazyLock<BTreeMap<String, WheelData>> = LazyLock::new(|| {
 
 /// Returns the names of the built-in rails, in alphabetical order.
 pub fn rail_names() -> impl Iterator<Item = &'static str> {
-    RAILS.keys().map(String::as_str)
+    RAILS.rails.keys().map(String::as_str)
+}
+
+/// Returns the former names of built-in rails, each with the name of today, in alphabetical order.
+pub fn former_rail_names() -> impl Iterator<Item = (&'static str, &'static str)> {
+    RAILS.former_names.iter().map(|(former, today)| (former.as_str(), today.name.as_str()))
 }
 
 /// Returns the names of the built-in wheels, in alphabetical order.
@@ -84,14 +100,22 @@ pub fn wheel_names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns a built-in rail head: upright, symmetric, origin at the crown's apex. It includes the flanks where they are
-/// inclined.
+/// inclined. A former name ([`former_rail_names`]) gives the rail of today under that name, which its source explains.
 ///
 /// # Errors
 /// An unknown name; the error offers the nearest known one, or says that the name is that of the other body.
 pub fn rail(name: &str) -> Result<Profile> {
-    let data =
-        RAILS.get(name).ok_or_else(|| unknown(name, ["rail", "wheel"], rail_names(), wheel_names()))?;
-    head(name, data)
+    let former = RAILS.former_names.get(name);
+    let today = former.map_or(name, |former| &former.name);
+    let data = RAILS
+        .rails
+        .get(today)
+        .ok_or_else(|| unknown(name, ["rail", "wheel"], rail_names(), wheel_names()))?;
+    let mut profile = head(name, data)?;
+    if let Some(former) = former {
+        profile.source = format!("{today} of {}; {}", profile.source, former.source);
+    }
+    Ok(profile)
 }
 
 /// Returns a built-in wheel: right-hand, flange at negative x, origin as its source says. Besides those of [`wheel_names`]
@@ -189,7 +213,7 @@ mod tests {
     fn every_rail_has_its_published_width_and_height() -> Result<()> {
         assert_eq!(rail_names().count(), 40);
         for name in rail_names() {
-            let data = &RAILS[name];
+            let data = &RAILS.rails[name];
             let profile = rail(name)?;
             let corner = 2 * data.crown_to_corner_radii.len() - 2;
             let flanks = usize::from(data.flank_dx_per_dz > 0.0);
@@ -204,6 +228,21 @@ mod tests {
             for joint in profile.continuity() {
                 assert!(joint.gap < 1e-12 && joint.kink.abs() < 1e-13, "{name}: {joint:?}");
             }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn former_names_are_those_of_rails_of_today() -> Result<()> {
+        let former: Vec<_> = former_rail_names().collect();
+        assert_eq!(former, [("BS113A", "56E1"), ("BV50", "50E3"), ("S49", "49E1"), ("UIC54", "54E1")]);
+        for (former, today) in former {
+            let (own, today) = (rail(former)?, rail(today)?);
+            assert_eq!(own.segments(), today.segments());
+            assert!(
+                own.name == former && own.source.contains(&today.name) && own.source.contains(&today.source)
+            );
+            assert!(is_built_in(&own, Side::Rail));
         }
         Ok(())
     }

@@ -7,6 +7,11 @@ fn complaint(name: &str, points: &[[f64; 2]], side: Side, options: &Options) -> 
     profile(name, text.as_bytes(), side, options).err().map(|error| error.to_string()).unwrap_or_default()
 }
 
+/// Returns a rail whose corner at smaller x is worn by 0.4 mm, so that its mirror image is another one.
+fn worn(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    points.iter().map(|&[x, z]| [x, z - 0.4 * (-(x + 20.0).powi(2) / 60.0).exp()]).collect()
+}
+
 fn scaled(points: &[[f64; 2]], unit: f64) -> Vec<[f64; 2]> {
     points.iter().map(|point| point.map(|value| value / unit)).collect()
 }
@@ -14,16 +19,13 @@ fn scaled(points: &[[f64; 2]], unit: f64) -> Vec<[f64; 2]> {
 #[test]
 fn a_file_in_inches_is_asked_for_its_unit_and_for_what_else_is_open() -> Result<()> {
     let (_, wheel) = s1002(0.3)?;
-    let rail = write::sample(&standards::rail("60E1")?, 0.3)?;
+    let rail = worn(&write::sample(&standards::rail("60E1")?, 0.3)?);
     let found = complaint("w.csv", &scaled(&wheel, 25.4), Side::Wheel, &Options::default());
     let expected = "w.csv: unit: found a width of 5.11811 mm; expected 60 to 150 mm, as rails and wheels have, or a `unit`; \
                     give the right `unit`: \"in\" or \"cm\" would do";
     assert_eq!(found, expected);
     let found = complaint("r.csv", &scaled(&rail, 25.4), Side::Rail, &Options::default());
-    assert!(
-        found.contains("`unit`: \"in\" or \"cm\" would do; and `mirror = true` (gauge corner"),
-        "{found}"
-    );
+    assert!(found.contains("`unit`: \"in\" would do; and `mirror = true` (gauge corner"), "{found}");
     assert!(!found.contains("flip_z"), "{found}");
     // Options for the axes do not hide that 5 mm are no wheel; a unit that is given does.
     let axes = Options { mirror: Some(false), flip_z: Some(false), ..Options::default() };
@@ -32,7 +34,11 @@ fn a_file_in_inches_is_asked_for_its_unit_and_for_what_else_is_open() -> Result<
     let stated = Options { unit: Some(Unit::Millimetre), ..axes };
     assert_eq!(complaint("w.csv", &scaled(&wheel, 25.4), Side::Wheel, &stated), "");
     let found = complaint("w.csv", &scaled(&wheel, 10.0), Side::Wheel, &Options::default());
-    assert!(found.contains("a width of 13 mm;") && found.contains("\"cm\" or \"in\" would do"), "{found}");
+    assert!(found.contains("a width of 13 mm;") && found.contains("`unit`: \"cm\" would do"), "{found}");
+    // 18.35 mm: neither 183 nor 466 mm are the width of a profile.
+    let part: Vec<[f64; 2]> = rail.iter().copied().filter(|[x, _]| (-32.0..-13.65).contains(x)).collect();
+    let found = complaint("p.csv", &part, Side::Rail, &Options::default());
+    assert!(!found.contains("\"cm\"") && !found.contains("\"in\""), "{found}");
     Ok(())
 }
 
@@ -53,7 +59,7 @@ fn points_in_no_order_are_said_to_be_so() -> Result<()> {
 
 #[test]
 fn the_other_body_is_named_before_the_axes_are_asked_for() -> Result<()> {
-    let rail = write::sample(&standards::rail("60E1")?, 0.5)?;
+    let rail = worn(&write::sample(&standards::rail("60E1")?, 0.5)?);
     let found = complaint("r.csv", &rail, Side::Wheel, &Options::default());
     assert!(found.starts_with("r.csv: flip_z, mirror: found the shape of a rail (side faces:"), "{found}");
     assert!(found.contains("give it as a rail; or give both options"), "{found}");
@@ -104,8 +110,13 @@ fn an_overhang_at_an_end_is_named_as_the_file_has_it_whatever_the_axes() {
         assert!(found.contains(told), "{mirror}: {found}");
         let found = complaint("o.csv", &points, Side::Rail, &options(&[Repair::Sort]));
         let expected = "o.csv: point 71 (line 71): found a path that turns back and does not return: beyond it lies point 72 (line 72); \
-                        expected a path that ends where the profile does; delete what lies beyond it";
+                        expected a path that ends where the profile does; \
+                        delete what lies beyond it, or give `repair = [\"sort\", \"remove-spikes\"]`";
         assert_eq!(found, expected, "{mirror}");
+        assert_eq!(
+            complaint("o.csv", &points, Side::Rail, &options(&[Repair::Sort, Repair::RemoveSpikes])),
+            ""
+        );
         points.pop();
         assert_eq!(complaint("o.csv", &points, Side::Rail, &options(&[Repair::Sort])), "", "{mirror}");
         points.push([last[0] + 2.0, last[1] + 3.0]);

@@ -14,7 +14,7 @@ use wheelrail::measured::{CurveKind, Format, write};
 pub(crate) struct ConvertArguments {
     #[command(flatten)]
     source: SourceArguments,
-    /// Format: miniprof, simpack, gensys, text or csv for points; toml for the segments of a chain.
+    /// Format: miniprof, simpack, gensys, text, csv or vampire for points; toml for the segments of a chain.
     #[arg(long, value_name = "FORMAT")]
     to: String,
     /// Distance of points along the curve, mm. If not given: 0.2 for a drawn profile; the measured points themselves for a

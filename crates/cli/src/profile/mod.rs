@@ -66,6 +66,9 @@ fn list() -> Result<String> {
     for name in standards::rail_names() {
         let _ = writeln!(out, "rail   {name:<24} {}", standards::rail(name)?.source);
     }
+    for (former, _) in standards::former_rail_names() {
+        let _ = writeln!(out, "rail   {former:<24} {}", standards::rail(former)?.source);
+    }
     for name in standards::wheel_names() {
         let _ = writeln!(out, "wheel  {name:<24} {}", standards::wheel(name)?.source);
     }

@@ -31,13 +31,13 @@ impl From<BodyOption> for Side {
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Measured files")]
 pub(super) struct MeasuredArguments {
-    /// Format: miniprof, simpack, gensys, text or csv; if not given, the extension tells.
+    /// Format: miniprof, simpack, gensys, text, csv or vampire; if not given, the extension tells.
     #[arg(long)]
     format: Option<String>,
     /// Columns of x and z of a text or CSV file: numbers from 1, or names; for example 2,3.
     #[arg(long, value_name = "X,Z")]
     columns: Option<String>,
-    /// Section of an .mpt file, from 1.
+    /// Section of an .mpt file, or profile of a text, CSV or Vampire file, from 1.
     #[arg(long, allow_negative_numbers = true)]
     section: Option<usize>,
     /// Place of the section along the track of an .slcs file, mm.

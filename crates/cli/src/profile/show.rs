@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::source::SourcedProfile;
 use crate::answer::counted;
-use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record};
+use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record, Surface, spoken};
 use wheelrail::profile::{Profile, Shape};
 
 /// Returns the description of a profile: name and source; how a measured file was read and fitted; segments and joints. The
@@ -44,11 +44,12 @@ fn record(out: &mut String, Measured { record, points, .. }: &Measured) {
         let _ = writeln!(out, "repair     {}: {points}, {places}", name(&repair.repair));
     }
     for finding in &record.warnings {
-        let _ = writeln!(out, "finding    {}, {}: {}", name(&finding.check), finding.place, finding.found);
+        let found = spoken(&finding.found, Surface::CommandLine);
+        let _ = writeln!(out, "finding    {}, {}: {found}", name(&finding.check), finding.place);
     }
-    if let [first, .., last] = points.as_slice() {
-        let _ = writeln!(out, "extent     x from {} to {} mm", first.x, last.x);
-    }
+    let x = || points.iter().map(|point| point.x);
+    let (from, to) = (x().fold(f64::INFINITY, f64::min), x().fold(f64::NEG_INFINITY, f64::max));
+    let _ = writeln!(out, "extent     x from {from} to {to} mm");
     fitted(out, curve);
 }
 

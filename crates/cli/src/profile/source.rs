@@ -7,7 +7,7 @@ use clap::Args;
 use super::options::{BodyOption, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
-use wheelrail::measured::{CurveKind, Format, Measured, Options};
+use wheelrail::measured::{CurveKind, Format, Measured, Options, Surface, spoken_error};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene::{self, ProfileSource};
 
@@ -81,12 +81,13 @@ impl SourceArguments {
             self.measured.reject(&self.profile)?;
         }
         let options = Options { curve: options.curve.or(curve.filter(|_| !drawn)), ..options };
-        let content = scene::read_profile(path, side, &options)?;
+        let content = scene::read_profile(path, side, &options)
+            .map_err(|error| spoken_error(error, Surface::CommandLine))?;
         Ok(SourcedProfile { side: side.or_else(|| Format::body_of_file(&self.profile)), content })
     }
 
     fn built_in(&self) -> Result<SourcedProfile> {
-        let rail = standards::rail_names().any(|name| name == self.profile);
+        let rail = standards::rail(&self.profile).is_ok();
         let named = standards::wheel(&self.profile);
         if !rail && named.is_err() && !self.profile.starts_with("EN13715-") {
             let expected = "a file, or a name of `wheelrail profile list`";

@@ -123,6 +123,8 @@ impl Specimen {
             (Format::Gensys, Side::Wheel) => "wheel",
             (Format::Text, _) => "txt",
             (Format::Csv, _) => "csv",
+            (Format::Vampire, Side::Rail) => "rai",
+            (Format::Vampire, Side::Wheel) => "whe",
         };
         let name = format!("{}-{}.{extension}", self.kind.name(), self.instrument.seed);
         let text = write::points(&self.points, format, side, &name);
