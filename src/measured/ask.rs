@@ -122,7 +122,7 @@ pub(super) fn of_content(points: &Points, starts: &[usize], options: &Options) -
         let lines: Vec<_> = starts.iter().take(5).map(place).collect();
         let more = if starts.len() > 5 { ", …" } else { "" };
         let found = format!("{} profiles, which begin in lines {}{more}", starts.len(), lines.join(", "));
-        let choices = format!("`section = 1` to `section = {}`", starts.len());
+        let choices = format!("`section = 1` to `section = {}`", points.sections.len());
         open.push(OpenQuestion { what: "section", found, choices });
     }
     open

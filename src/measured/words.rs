@@ -52,7 +52,7 @@ fn option(text: &str, surface: Surface) -> Option<String> {
     let (key, value) = text.split_once(" = ").map_or((text, None), |(key, value)| (key, Some(value)));
     Options::KEYS.contains(&key).then(|| match surface {
         Surface::CommandLine => {
-            let bare = |value: &str| value.replace(['"', '[', ']'], "").replace(", ", ",");
+            let bare = |value: &str| value.trim_matches(['[', ']']).replace('"', "").replace(", ", ",");
             let value = value.map_or_else(String::new, |value| format!(" {}", bare(value)));
             format!("--{}{value}", key.replace('_', "-"))
         }

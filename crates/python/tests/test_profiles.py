@@ -85,6 +85,20 @@ def test_profiles_hash_as_they_compare(measured: wr.Profile) -> None:
     assert hash(pickle.loads(pickle.dumps(measured))) == hash(measured)
 
 
+def test_messages_name_keywords_and_former_names_are_known() -> None:
+    x, z = wr.rail("60E1").points(0.5).T
+    # The mirror image of a symmetric head is the same head; that of a worn one is asked for.
+    assert len(wr.Profile.from_points(x, z, side="rail", curve="interpolation")) > 0
+    worn = z - 0.4 * np.exp(-((x + 20.0) ** 2) / 60.0)
+    with pytest.raises(wr.InputError, match="`mirror=True`"):
+        wr.Profile.from_points(x, worn, side="rail")
+    worn[50], worn[51] = worn[51], worn[50]
+    x[50], x[51] = x[51], x[50]
+    with pytest.raises(wr.InputError, match=r"`mirror=True`.*`repair=\\[\"sort\"\\]`"):
+        wr.Profile.from_points(x, worn, side="rail")
+    assert np.array_equal(wr.rail("UIC54").points(), wr.rail("54E1").points())
+
+
 def test_measures_are_those_of_the_command_line_and_say_what_is_missing() -> None:
     nominal = wr.wheel("S1002")
     x, z = nominal.points(0.1).T

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | GENSYS | first column y towards the centre of the track for both sides, second z down, mm; `#` begins a comment; origin at the nominal running circle | manual of program KPF, "Wheel profile input data" |
 
+use super::dialect::is_missing;
 use super::points::Points;
 use super::scan::lines;
 use crate::error::Result;
@@ -18,6 +19,7 @@ pub(in crate::measured) fn read_gensys(text: &str) -> Result<Points> {
     for line in lines(text).map(|line| line.without_comment(&['#', '!'])) {
         match line.fields()?[..] {
             [] => {}
+            [y, z] if is_missing(y) || is_missing(z) => points.no_value(line),
             [y, z] => points.push(line, [line.number(y, "y")?, line.number(z, "z")?], 1.0)?,
             _ => return Err(line.error(line.text, "two numbers, y and z", "delete the other columns")),
         }

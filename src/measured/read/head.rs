@@ -116,7 +116,7 @@ fn unit_of_key(text: &str) -> Option<Unit> {
 }
 
 /// Returns a title in lower case, without the unit behind it.
-fn bare(title: &str) -> String {
+pub(super) fn bare(title: &str) -> String {
     let end = title.find(['[', '(', '/', '_']).unwrap_or(title.len());
     title[..end].trim().to_lowercase()
 }

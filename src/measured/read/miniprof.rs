@@ -13,6 +13,7 @@
 //! A line that begins with `"`, `!`, `%` or `#` is a comment. Text after a number is a comment too. Design profiles give
 //! `MPDk=A x y radius from to` (degrees, counter-clockwise) and `MPDk=L x y x y`.
 
+use super::dialect::is_missing;
 use super::points::{ElementShape, Points};
 use super::scan::{Line, clipped, is_number, lines, unquoted};
 use crate::error::Result;
@@ -123,6 +124,10 @@ impl Reader {
         }
         if !self.in_data {
             self.begin_data(line)?;
+        }
+        if self.header.lacks_value(line)? {
+            self.points.no_value(line);
+            return Ok(());
         }
         let point = self.header.point(line)?;
         self.points.push(line, point, 1.0)
@@ -235,6 +240,13 @@ impl MiniProfHeader {
         };
         (self.columns, self.width) = ([x, y], names.len());
         Ok(())
+    }
+
+    /// Tells whether a row says that X or Y has no value.
+    fn lacks_value(&self, line: Line) -> Result<bool> {
+        let fields = line.without_comment(&COMMENTS).fields()?;
+        let lacks = |k: &usize| fields.get(*k).is_some_and(|field| !field.is_empty() && is_missing(field));
+        Ok(self.columns.iter().any(lacks))
     }
 
     /// Returns X and Y of a row. Text after the numbers of the columns is a comment.

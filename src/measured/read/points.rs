@@ -108,6 +108,8 @@ pub struct Points {
     pub unit_line: Option<usize>,
     /// Rows without values between points.
     pub gaps: Vec<Gap>,
+    /// The first and the last line of rows without values behind the last point.
+    pending: Option<(usize, usize)>,
     /// The columns of a table that was read by its likeliest two, for want of an option.
     pub columns: Option<ColumnChoice>,
 }
@@ -154,15 +156,23 @@ impl Points {
             applied: 1.0,
             unit_line: None,
             gaps: Vec::new(),
+            pending: None,
             columns: None,
         }
     }
 
     /// Begins a section with the next point.
     pub(in crate::measured) fn begin_section(&mut self) {
+        self.pending = None;
         if self.sections.last() != Some(&self.at.len()) {
             self.sections.push(self.at.len());
         }
+    }
+
+    /// Takes a row without a value: a gap, if points follow.
+    pub(in crate::measured) fn no_value(&mut self, line: Line) {
+        let first = self.pending.map_or(line.number, |(first, _)| first);
+        self.pending = Some((first, line.number));
     }
 
     /// Returns the indices at which profiles begin: sections that go on where the previous one ends belong to one profile.
@@ -170,10 +180,12 @@ impl Points {
         let whole = Self::reach(&self.at);
         let size = whole[0].width().max(whole[1].width());
         let mut out = vec![0];
-        let first = self.sections.get(1).copied().unwrap_or(self.at.len());
-        let mut before = Self::reach(&self.at[..first]);
-        for (k, &from) in self.sections.iter().enumerate().skip(1) {
-            let next = self.sections.get(k + 1).copied().unwrap_or(self.at.len());
+        let inside = self.sections.iter().copied().filter(|from| (1..self.at.len()).contains(from));
+        let starts: Vec<usize> = inside.collect();
+        let end = |k: usize| starts.get(k).copied().unwrap_or(self.at.len());
+        let mut before = Self::reach(&self.at[..end(0)]);
+        for (k, &from) in starts.iter().enumerate() {
+            let next = end(k + 1);
             let own = Self::reach(&self.at[from..next]);
             let (last, begin) = (self.at[from - 1], self.at[from]);
             let apart = (begin.x - last.x).hypot(begin.z - last.z) > APART * size;
@@ -210,6 +222,9 @@ impl Points {
                 format!("{MOST_POINTS} points at most"),
                 "thin them out",
             ));
+        }
+        if let (Some(lines), Some(before)) = (self.pending.take(), self.at.last()) {
+            self.gaps.push(Gap { after: before.number, lines });
         }
         self.at.push(Point { x, z, weight, number, line: line.number });
         Ok(())

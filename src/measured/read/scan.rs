@@ -147,7 +147,8 @@ fn number(field: &str) -> Option<f64> {
     let value: f64 = if plain {
         field.parse().ok()?
     } else {
-        // `parse` alone would accept "inf" and "nan" too.
+        // Typographers' minus signs. `parse` alone would accept "inf" and "nan" too.
+        let field = field.replace(['\u{2212}', '\u{2013}'], "-");
         if !field.bytes().all(|b| b.is_ascii_digit() || b"+-.,eEdD".contains(&b)) {
             return None;
         }
@@ -204,7 +205,14 @@ mod tests {
 
     #[test]
     fn numbers_are_finite_and_nothing_else() -> Result<()> {
-        for (text, value) in [("1.5", 1.5), ("-1,5", -1.5), ("1.5D+01", 15.0), ("+2e-3", 2e-3), (".5", 0.5)] {
+        for (text, value) in [
+            ("1.5", 1.5),
+            ("-1,5", -1.5),
+            ("1.5D+01", 15.0),
+            ("+2e-3", 2e-3),
+            (".5", 0.5),
+            ("\u{2212}2.5", -2.5),
+        ] {
             assert_eq!(line("").number(text, "x")?, value);
         }
         for text in ["", "inf", "NaN", "1e999", "1.2.3", "1.0x", "--1", "e"] {

@@ -17,6 +17,7 @@
 
 use std::collections::BTreeMap;
 
+use super::dialect::is_missing;
 use super::points::{Point, Points};
 use super::scan::{Line, last_place, lines};
 use crate::error::{Error, Result};
@@ -123,6 +124,10 @@ fn push(points: &mut Points, line: Line) -> Result<()> {
     let fields = line.fields()?;
     if !(2..=3).contains(&fields.len()) {
         return Err(line.error(line.text, "y, z and perhaps a weight", "correct or delete the line"));
+    }
+    if fields[..2].iter().any(|field| !field.is_empty() && is_missing(field)) {
+        points.no_value(line);
+        return Ok(());
     }
     let weight = fields.get(2).map_or(Ok(1.0), |field| line.number(field, "weight"))?;
     if weight <= 0.0 {

@@ -4,8 +4,8 @@
 //! which mark is decimal is what no group of three digits explains. A row without a value is a gap, blocks of rows are sections.
 
 use super::dialect::{Dialect, Marks, is_missing, is_numeric};
-use super::head::Head;
-use super::points::{ColumnChoice, Gap, Points};
+use super::head::{self, Head};
+use super::points::{ColumnChoice, Points};
 use super::scan::{Line, clipped, last_place, lines};
 use super::slices::position_and_file;
 use crate::error::{Error, Result};
@@ -14,6 +14,9 @@ use crate::measured::column::Column;
 
 /// Least number of rows over which a column keeps its value, where it numbers the profiles of a file.
 const LEAST_RUN: usize = 3;
+
+/// Least number of rows that a row of two numbers may count.
+const LEAST_COUNTED: usize = 10;
 
 /// A row of the file: its line and what it is.
 struct Row<'a> {
@@ -107,9 +110,10 @@ fn shape(rows: &[Line], split: &[Vec<&str>]) -> Result<Option<(usize, usize)>> {
         let expected = format!("{width} columns, as {many} other rows have");
         return Err(rows[k].error(found, expected, "correct or delete the line"));
     }
-    // A head may give the number of the rows below it.
+    // A head may give the numbers of the rows below it and of the columns.
     let below = split[first + 1..].iter().filter(|fields| full(fields)).count();
-    if split[first][0].parse() == Ok(below) && below > 0 {
+    if below >= LEAST_COUNTED && split[first][0].parse() == Ok(below) && split[first][1].parse() == Ok(width)
+    {
         first += 1 + split[first + 1..].iter().position(|fields| full(fields)).unwrap_or(0);
     }
     Ok(Some((width, first)))
@@ -153,8 +157,11 @@ fn choose(
             all.next().zip(all.next()).filter(|_| all.next().is_none()).map(|(a, b)| [a, b])
         });
         let names = head.names();
-        let column = |k: usize| match names.get(k) {
-            Some(name) if !name.is_empty() => Column::Name(name.clone()),
+        // By a name of one word that finds it, or by its number.
+        let column = |k: usize| match names.get(k).map(|name| head::bare(name)) {
+            Some(name) if head.column(&name) == Some(k) && name.chars().all(char::is_alphanumeric) => {
+                Column::Name(name)
+            }
             _ => Column::Number(k + 1),
         };
         let choice = ColumnChoice {
@@ -187,7 +194,6 @@ fn fill(points: &mut Points, body: &[Row], at: [usize; 2], width: usize) -> Resu
     let marks = Marks::of(fields.flat_map(|row| at.map(|k| (row.line, row.fields[k]))))?;
     let counters = counters(body, at, width);
     let mut between = true;
-    let mut missing: Option<(usize, usize)> = None;
     let mut last: Option<&Row> = None;
     for row in body {
         let field = |k: usize| row.fields.get(at[k]).copied().unwrap_or_default();
@@ -202,16 +208,12 @@ fn fill(points: &mut Points, body: &[Row], at: [usize; 2], width: usize) -> Resu
             if !points.at.is_empty() && (between || last.as_ref().is_some_and(other)) {
                 points.begin_section();
             }
-            if let (Some(lines), Some(before)) = (missing.take(), points.at.last()) {
-                points.gaps.push(Gap { after: before.number, lines });
-            }
             points.push(row.line, point, 1.0)?;
             (between, last) = (false, Some(row));
         } else if row.fields.iter().all(|field| field.is_empty()) {
             between = true;
         } else if (0..2).all(|k| row.numbers[k] || lacks(k)) && (lacks(0) || lacks(1)) {
-            let line = row.line.number;
-            missing = Some(missing.map_or((line, line), |(first, _)| (first, line)));
+            points.no_value(row.line);
         } else if row.numbers == [false; 2] || between {
             if !between {
                 points.note(row.line.number, "a line of text after points: not used");
@@ -245,7 +247,7 @@ fn counters(body: &[Row], at: [usize; 2], width: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measured::Point;
+    use crate::measured::{Gap, Point};
 
     fn xz(text: &str, columns: Option<&[Column; 2]>) -> Result<Vec<[f64; 2]>> {
         Ok(read_table(text, Format::Csv, columns)?.at.iter().map(Point::xz).collect())
@@ -262,7 +264,7 @@ mod tests {
         let choice = read_table(text, Format::Csv, None)?.columns;
         assert!(choice.is_some_and(|c| c.count == 3
             && c.line == 2
-            && c.likely == Some(["Y", "Z"].map(|n| Column::Name(n.into())))));
+            && c.likely == Some(["y", "z"].map(|n| Column::Name(n.into())))));
         let wrong = [Column::Number(0), Column::Number(4)];
         assert!(xz(text, Some(&wrong)).is_err_and(|e| e.place == "line 2"));
         assert_eq!(xz("% c\n1 2\n// x\n3 4", None)?, [[1.0, 2.0], [3.0, 4.0]]);
@@ -284,12 +286,13 @@ mod tests {
             "-1'471.5, 26.0728\n1'472.25, -0.5\n",
             "Gleis 3 - rechts\nmm;mm\n-1471.5;26.0728;\n1472.25;-.5;\n",
             "2\n-1471.5D0 26.0728\n1.47225e3 -0.5 # end\n",
-            "2 2\n-1471.5 26.0728\n1472.25 -0.5\n",
         ] {
             let found = xz(text, None).map_err(|error| error.within(text))?;
             assert_eq!(found[..2], expected, "{text}");
         }
-        for text in ["1.471;26,07\n2.3;1\n1.471;2,5\n", "1.471;26,07\n1.472;26,08\n", "1 2 3\n1 2\n1 2\n"] {
+        let counted = format!("12 2\n{}", "-1471.5 26.0728\n1472.25 -0.5\n".repeat(6));
+        assert_eq!(xz(&counted, None)?[..2], expected);
+        for text in ["1.471;26,07\n1.472;26,08\n", "1 2 3\n1 2\n1 2\n"] {
             assert!(xz(text, None).is_err(), "{text}");
         }
         Ok(())

@@ -39,7 +39,11 @@ pub(in crate::measured) fn read(text: &str) -> Result<Points> {
         "WHEELPROFILE" => Side::Wheel,
         "RAILPROFILE" => Side::Rail,
         other => {
-            return Err(first.error(other, "WHEELPROFILE or RAILPROFILE", "give its `format`, or correct it"));
+            return Err(first.error(
+                other,
+                "WHEELPROFILE or RAILPROFILE",
+                "give its `format`, or correct it",
+            ));
         }
     };
     next("a title")?;

@@ -205,6 +205,38 @@ fn bad_input_ends_with_code_2_and_says_what_to_do() {
 }
 
 #[test]
+fn messages_name_the_options_of_the_command_line_and_following_them_reads_the_file() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let row = |k: i32, z: f64| format!("{};{};{}\n", 1 + i32::from(z < 0.0), k, z - 0.01 * f64::from(k * k));
+    let blocks: String = [0.0, -3.0].iter().flat_map(|z| (-25..30).map(move |k| row(k, *z))).collect();
+    std::fs::write(here.join("blocks.csv"), format!("km;y [mm];z [mm]\n{blocks}")).unwrap();
+    let output = wheelrail(here, &["show", "blocks.csv", "--side", "rail"]);
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    for part in
+        ["`--columns y,z`", "`--section 1` to `--section 2`", "`--mirror true` (", "`--mirror false` ("]
+    {
+        assert!(complaint.contains(part), "{part}: {complaint}");
+    }
+    assert!(!complaint.contains(" = "), "{complaint}");
+    let given = ["--columns", "y,z", "--section", "2", "--mirror", "false"];
+    let shown = text(here, &[&["show", "blocks.csv", "--side", "rail"], &given[..]].concat());
+    assert!(shown.contains("points     55 read, 55 used") && shown.contains("line 1 of the file"), "{shown}");
+    std::fs::write(here.join("list.txt"), "153.28 nose-1.prr\n153.31 nose-2.prr\n").unwrap();
+    let output = wheelrail(here, &["show", "list.txt", "--side", "rail"]);
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(complaint.contains("line 1: found a position and the file of a slice"), "{complaint}");
+}
+
+#[test]
+fn former_names_of_rails_are_known_and_listed() {
+    let here = TempDir::new().unwrap();
+    assert!(text(here.path(), &["list"]).contains("\nrail   UIC54                    54E1 of EN 13674-1"));
+    let [former, today] = ["UIC54", "54E1"].map(|name| text(here.path(), &["convert", name, "--to", "csv"]));
+    assert_eq!(former, today);
+}
+
+#[test]
 fn what_killed_conversions_leave_goes_with_the_next_one() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
