@@ -3,6 +3,7 @@
 use nalgebra::{Point2, UnitComplex};
 
 use super::doubts::ContactDoubts;
+use crate::measure::flange_back;
 use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
 use crate::profile::{last_groove, points_along};
@@ -76,6 +77,8 @@ pub struct Landmarks {
     pub(crate) reach: Interval,
     /// Height over the tip \[mm\] of the profile's end at its least abscissa: the largest within 1 mm of it.
     pub(crate) back: f64,
+    /// Abscissa of the flange back \[mm\] where the wheel's profile shows it.
+    pub(crate) back_x: Option<f64>,
 }
 
 impl Landmarks {
@@ -90,7 +93,8 @@ impl Landmarks {
         let back = wheel.iter().filter(|at| at.x < reach.low + BACK_WIDTH).map(|at| at.y);
         let back = back.fold(f64::NEG_INFINITY, f64::max) - low.y;
         let tip = (median_height(&wheel) - low.y >= FLANGE).then_some(low);
-        Self { pair: pair.clone(), top, tip, reach, back }
+        let back_x = flange_back(pair.wheel());
+        Self { pair: pair.clone(), top, tip, reach, back, back_x }
     }
 
     /// Returns the height \[mm\] of the wheel's surface over the top of the rail, 0 where nothing of the wheel is over it: how far

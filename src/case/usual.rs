@@ -41,10 +41,14 @@ const PLAY: RangeInclusive<f64> = 40.0..=110.0;
 /// Depths below the top of rail at which gauges are measured \[mm\]: 9 (trams) to 16 (5/8 in).
 const GAUGE_HEIGHTS: RangeInclusive<f64> = 5.0..=30.0;
 
-/// Height of the profile's end over the flange's tip from which on the end is the flange's back \[mm\], and the largest
-/// difference of its abscissa from the given one \[mm\]: backs that are not measured to their whole height end at a rounding of
+/// Largest distance of a given flange back from the one that the profile shows that raises no doubt \[mm\]: railways measure it to
+/// 0.5 mm.
+const BACK_OFF: f64 = 1.0;
+
+/// Where the profile shows no back: height of its end over the flange's tip from which on the end is near the back \[mm\], and the
+/// largest distance of the given back from that end \[mm\]: backs that are not measured to their whole height end at a rounding of
 /// some 10 mm.
-const BACK: [f64; 2] = [5.0, 10.0];
+const BACK_END: [f64; 2] = [5.0, 10.0];
 
 /// Largest speed that raises no doubt \[m/s\]: 360 km/h.
 const FAST: f64 = 100.0;
@@ -125,12 +129,15 @@ pub fn flange_side(place: &str, marks: &Landmarks) -> Option<Doubt> {
     (tip.x > left + marks.reach.width() / 2.0).then(|| Doubt::new(DoubtKind::FlangeSide, found()))
 }
 
-/// Gives the doubt about the abscissa of a flange back \[mm\] where the wheel's profile shows another one, more than 10 mm away.
+/// Gives the doubt about the abscissa of a flange back \[mm\] where the wheel's profile shows another one, more than 1 mm away; or of a
+/// profile that ends before its back, where it ends more than 10 mm away.
 pub fn flange_back_x([place, wheel]: [&str; 2], x: f64, marks: &Landmarks) -> Option<Doubt> {
-    let ([height, off], left) = (BACK, marks.reach.low);
-    let shown = marks.tip.is_some() && marks.back > height && flange_side(wheel, marks).is_none();
-    let found = || format!("{place}: {x} mm, and the back of {wheel} is at x = {left:.1} mm");
-    (shown && (x - left).abs() > off).then(|| Doubt::new(DoubtKind::FlangeBackX, found()))
+    let [height, near_end] = BACK_END;
+    let end = (marks.back > height).then_some((marks.reach.low, near_end));
+    let (back, off) = marks.back_x.map(|back| (back, BACK_OFF)).or(end)?;
+    let shown = marks.tip.is_some() && flange_side(wheel, marks).is_none();
+    let found = || format!("{place}: {x} mm, and the back of {wheel} is at x = {back:.1} mm");
+    (shown && (x - back).abs() > off).then(|| Doubt::new(DoubtKind::FlangeBackX, found()))
 }
 
 /// Lists the doubts about kinks of more than 5° of a drawn profile.

@@ -27,6 +27,7 @@ pub use limits::{Limit, Limits};
 pub use measures::Measures;
 pub use measuring::measure;
 pub use noise::{PointNoise, measure_noisy};
+pub(crate) use nominal::flange_back;
 pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;

@@ -117,6 +117,12 @@ pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
     }
 }
 
+/// Returns x of a wheel's flange back \[mm\] where its profile shows it without a doubt: as a line, or as an end that stands upright to
+/// 15°, which lies within 1 mm of the back.
+pub fn flange_back(wheel: &Profile) -> Option<f64> {
+    back_of(&sized(wheel).ok()?).ok().map(|back| back.x)
+}
+
 /// Returns the running head of a rail, right of its last groove, and the index of the groove's bottom; `None` without a groove.
 pub(super) fn running_head(curve: &MarkedCurve) -> (MarkedCurve, Option<usize>) {
     let heights: Vec<f64> = curve.marks.iter().map(|mark| mark.station.z).collect();

@@ -29,7 +29,7 @@ mod tests;
 pub use clean::checks::{Check, Finding};
 pub use clean::repairs::Repaired;
 pub use column::Column;
-pub use fit::curve::{Corner, CurveRecord, Residual};
+pub use fit::curve::{Corner, CurveRecord, Residual, ShapeTaken};
 pub(crate) use options::measured_options;
 pub use options::{
     ARC_TOLERANCE, CUTOFF_WAVELENGTH, CurveKind, GAUGE_HEIGHT, KINK_ANGLE, NamedOrigin, Options, Origin,
@@ -369,7 +369,7 @@ fn drawn(
     cut: Option<CutRecord>,
 ) -> Result<Measured> {
     let Placed { points, elements, elements_alone, .. } = placed;
-    let (segments, curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
+    let (segments, curve, of_curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
     let profile = Profile::new(name, source, segments)?;
     let record = Record {
         format: placed.format,
@@ -380,7 +380,7 @@ fn drawn(
         already_inclined: options.already_inclined,
         diameter: placed.diameter,
         repairs: placed.repairs,
-        warnings: placed.findings,
+        warnings: placed.findings.into_iter().chain(of_curve).collect(),
         curve,
         cut,
     };

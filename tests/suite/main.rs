@@ -50,6 +50,7 @@ mod reference_yawed;
 mod report;
 mod rollers;
 mod slices;
+mod smoothing;
 mod specimens;
 mod steps;
 mod strips;

@@ -50,6 +50,12 @@ pub enum Check {
     MissingSideFace,
     /// The profile's shape contradicts its orientation, which follows from the definition of the format.
     Orientation,
+    /// Smoothing takes away more than noise.
+    Smoothing,
+    /// The points are too far apart to show the shape between them.
+    Sparse,
+    /// The noise of the points leaves the curvature too uncertain for pressures.
+    Noise,
 }
 
 /// A fault that was found.
@@ -88,8 +94,18 @@ impl Finding {
             Check::OutOfOrder | Check::ZigZag => Some(Repair::Sort),
             Check::Spike | Check::TurnsBack => Some(Repair::RemoveSpikes),
             Check::Loop => Some(Repair::CutLoops),
-            Check::Gap | Check::MissingSideFace | Check::Orientation => None,
+            Check::Gap
+            | Check::MissingSideFace
+            | Check::Orientation
+            | Check::Smoothing
+            | Check::Sparse
+            | Check::Noise => None,
         }
+    }
+
+    /// Makes a finding about the curve through the points: it may be off the surface.
+    pub(in crate::measured) fn of_curve(check: Check, place: String, found: String) -> Self {
+        Self { check, fatal: false, place, found }
     }
 
     fn expectation(&self) -> (&'static str, &'static str) {
@@ -103,6 +119,9 @@ impl Finding {
             Check::TurnsBack => ("a path that ends where the profile does", "delete what lies beyond it"),
             Check::Gap | Check::MissingSideFace => ("a complete profile", "measure it"),
             Check::Orientation => ("an upright right-hand profile", "correct `mirror` or `flip_z`"),
+            Check::Smoothing | Check::Sparse | Check::Noise => {
+                ("a curve near the surface", "measure closer points of less noise")
+            }
         }
     }
 }

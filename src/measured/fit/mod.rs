@@ -6,5 +6,6 @@ pub mod curve;
 pub mod elements;
 mod kinks;
 mod parabola;
+mod scatter;
 mod smoothing;
 mod spline;

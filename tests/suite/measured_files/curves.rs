@@ -21,7 +21,7 @@ fn smoothing_halves_a_wave_of_the_cutoff_length_whatever_the_spacing() -> Result
             })
             .collect();
         let text = write::points(&points, Format::Text, Side::Rail, "wave");
-        let options = Options { mirror: Some(false), ..Options::default() };
+        let options = Options { mirror: Some(false), cutoff_wavelength: Some(5.0), ..Options::default() };
         let smooth = profile("wave.txt", text.as_bytes(), Side::Rail, &options)?.profile;
         let section = Section::own_axes(&smooth, Side::Rail);
         // The height between crest and trough, 2.5 mm apart, without the drop of the parabola.

@@ -57,6 +57,9 @@ fn fitted(out: &mut String, curve: &CurveRecord) {
     let _ = write!(out, "curve      {}, {} segments", name(&curve.kind), curve.segments);
     if let Some(cutoff) = curve.cutoff_wavelength {
         let _ = write!(out, ", cut-off wavelength {cutoff} mm");
+        if let Some(because) = curve.cutoff_because {
+            let _ = write!(out, ", because of {because}");
+        }
     }
     if let Some(tolerance) = curve.tolerance {
         let _ = write!(out, ", tolerance {tolerance} mm");
@@ -70,6 +73,13 @@ fn fitted(out: &mut String, curve: &CurveRecord) {
         let (largest, rms) = (1e3 * residual.largest, 1e3 * residual.rms);
         let worst = &residual.worst;
         let _ = writeln!(out, "residual   largest {largest:.3} um at {worst}, rms {rms:.3} um");
+    }
+    if let Some(noise) = curve.noise {
+        let _ = write!(out, "noise      {:.3} um across", 1e3 * noise);
+        if let Some(error) = curve.curvature_error {
+            let _ = write!(out, "; the curvature is known to {error:.2e} 1/mm");
+        }
+        out.push('\n');
     }
 }
 
