@@ -80,8 +80,14 @@ fn doubts_of_curve(found: &Measured) -> Vec<&Finding> {
 /// A random drawn body of those that are one smooth curve.
 fn body(random: &mut Random) -> Result<(Profile, Side)> {
     Ok(match random.below(2) {
-        0 => (standards::rail(random.pick(&["60E1", "UIC60", "54E1", "49E1", "50E3", "46E2"]))?, Side::Rail),
-        _ => (standards::wheel(random.pick(&["S1002", "EN15302-A", "EN15302-B", "EN15302-H"]))?, Side::Wheel),
+        0 => (
+            standards::rail(random.pick::<&str>(&["60E1", "UIC60", "54E1", "49E1", "50E3", "46E2"]))?,
+            Side::Rail,
+        ),
+        _ => (
+            standards::wheel(random.pick::<&str>(&["S1002", "EN15302-A", "EN15302-B", "EN15302-H"]))?,
+            Side::Wheel,
+        ),
     })
 }
 
@@ -106,14 +112,19 @@ fn curves_are_as_near_as_noise_allows_or_doubted() -> Result<()> {
             told += 1;
             continue;
         }
-        // What smoothing may move unseen, and what it leaves of the noise.
+        // What smoothing may move unseen, a mean that noise may have, and what it leaves of the noise.
         let left = (2.0 * sampling.spacing / cutoff).min(1.0).sqrt();
-        let bound = 0.005 * sampling.size + 5.0 * left * sampling.noise;
-        let (marks, mut hint, reach) = (trace(&found.profile, 0.05 * sampling.size), 0, exact.extent());
-        assert!(reach > 0.0);
+        let bound = 0.008 * sampling.size + 9.0 * left * noise.max(sampling.noise);
+        let (marks, mut hint) = (trace(&found.profile, 0.05 * sampling.size), 0);
         let all = trace(&exact, 0.5);
-        let ends = [all[0].s + 6.0, all[all.len() - 1].s - 6.0];
-        for Mark { station, s, .. } in all.iter().filter(|mark| mark.s > ends[0] && mark.s < ends[1]) {
+        // Curves end freely, and drawn kinks lie between points.
+        let kinks =
+            exact.continuity().into_iter().filter(|joint| joint.kink.abs() > 0.01).map(|joint| joint.x);
+        let ends = [all[0].station.x, all[all.len() - 1].station.x];
+        let free: Vec<f64> = kinks.chain(ends).collect();
+        let reach = (cutoff + 3.0 * sampling.spacing) / sampling.size;
+        let inside = |mark: &&Mark| free.iter().all(|x| (mark.station.x - x).abs() > reach);
+        for Mark { station, s, .. } in all.iter().filter(inside) {
             let near = beside(&marks, [station.x, station.z].map(|x| sampling.size * x), hint).unwrap();
             hint = near.mark;
             worst = worst.max(near.across.abs() / bound);
@@ -269,12 +280,17 @@ fn noise_makes_no_corner_whatever_the_cutoff() -> Result<()> {
         }
         read += of_cutoffs.len();
         assert!(of_cutoffs.windows(2).all(|pair| pair[0] == pair[1]), "{number}: {of_cutoffs:?}");
+        // The chamfers of drawn wheels are corners.
+        let drawn = |x: f64| {
+            let near = |at: f64| (at * sampling.size - x).abs() < 0.5 + 2.0 * sampling.spacing;
+            exact.continuity().iter().any(|joint| joint.kink.abs() > 0.4 && near(joint.x))
+        };
         let found = of_cutoffs.into_iter().next().unwrap_or_default();
-        if !found.is_empty() {
+        if found.iter().any(|corner| !drawn(corner.point[0])) {
             corners.push(format!("{number}: {} {sampling:?}, off at {at}: {found:?}", exact.name));
         }
     }
-    println!("{read} curves of {} samples, {} with a corner", campaign::scenes(), corners.len());
+    println!("{read} curves of {} samples, {} with a corner that is none", campaign::scenes(), corners.len());
     assert!(read > 0 && corners.is_empty(), "{corners:#?}");
     Ok(())
 }
@@ -314,8 +330,12 @@ fn a_flange_back_that_the_wheel_does_not_have_is_doubted() -> Result<()> {
     let mut random = Random::new(70);
     let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
     for number in 0..campaign::scenes() {
-        let wheel =
-            standards::wheel(random.pick(&["S1002", "EN15302-A", "EN15302-H", "EN13715-1:40-h28-e32.5"]))?;
+        let wheel = standards::wheel(random.pick::<&str>(&[
+            "S1002",
+            "EN15302-A",
+            "EN15302-H",
+            "EN13715-1:40-h28-e32.5",
+        ]))?;
         let sampling = Sampling {
             spacing: random.between(0.1, 0.4),
             size: 1.0,

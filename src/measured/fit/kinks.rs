@@ -16,8 +16,9 @@ const LEAST_IN_WINDOW: usize = 5;
 const LEAST_AT_END: usize = 3;
 /// Deviation of a parabola's slope at its end over m points of noise σ, in σ/(window √m): √192.
 const END_SLOPE: f64 = 13.86;
-/// Longest reach of these points, in windows: between points farther apart arcs look like corners.
-const LONGEST: f64 = 2.0;
+/// Longest reach of these points, in windows: between points farther apart arcs look like corners, unless they lie on the parabolas to
+/// the last bit.
+const LONGEST: f64 = 1.2;
 /// Deviations of a turn beyond which it is no noise: one of 2 million is. Of few points more by the share of [`FEW`] to their number, as
 /// in Student's distribution.
 const SIGNIFICANT: f64 = 5.0;
