@@ -139,14 +139,20 @@ pub(super) fn symmetric(points: &[Point], axis: f64) -> bool {
     // The images follow the path backwards: the nearest edge of one is near that of the last one.
     let mut edge = nearest(&image(&points[0]));
     let lowest = top(points) - TOUCHED;
-    points.iter().map(image).all(|p| {
+    points.iter().map(image).filter(|p| p.z >= lowest).all(|p| {
+        let same = |k: usize| off(&p, k) <= SAME_SHAPE + sagitta(k);
         loop {
             let ahead = (1..=3).flat_map(|step| [edge + step, edge + edges - step]).map(|k| k % edges);
             match ahead.min_by(|&a, &b| off(&p, a).total_cmp(&off(&p, b))) {
                 Some(better) if off(&p, better) < off(&p, edge) => edge = better,
-                _ => return p.z < lowest || off(&p, edge) <= SAME_SHAPE + sagitta(edge),
+                _ => break,
             }
         }
+        if !same(edge) {
+            // The walk may have stopped short of a corner.
+            edge = nearest(&p);
+        }
+        same(edge)
     })
 }
 

@@ -101,7 +101,7 @@ impl Dialect {
                     !part.contains(',') && inner.clone().count() > 1 && inner.clone().all(is_numeric)
                 };
                 let fields = cut(text, ',');
-                if fields.iter().any(|part| apart(&part)) { Vec::new() } else { fields }
+                if fields.iter().any(apart) { Vec::new() } else { fields }
             }
             Self::SecondComma if text.contains(char::is_alphabetic) => cut(text, ','),
             Self::SecondComma => {

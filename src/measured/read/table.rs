@@ -26,6 +26,15 @@ struct Row<'a> {
     numbers: [bool; 2],
 }
 
+impl Row<'_> {
+    /// Tells whether the row is a sentence, such as "Profile 2", rather than numbers of which one is spoilt.
+    fn begins_with_word(&self) -> bool {
+        self.fields
+            .first()
+            .is_some_and(|first| first.chars().take(3).filter(|c| c.is_alphabetic()).count() == 3)
+    }
+}
+
 /// Reads two columns of a table, by their numbers or by their names in its head.
 ///
 /// Comments begin with `#`, `!`, `%` or `//`. A table of more than two columns without `wanted` is read by its likeliest two, and
@@ -103,8 +112,7 @@ fn shape(rows: &[Line], split: &[Vec<&str>]) -> Result<Option<(usize, usize)>> {
     let Some(mut first) = split.iter().position(|fields| full(fields) && words(fields) == usual) else {
         return Ok(None);
     };
-    let odd =
-        |fields: &[&str]| fields.len() != width && numbers(fields) >= 2 && !fields.iter().any(|f| text(&f));
+    let odd = |fields: &[&str]| fields.len() != width && numbers(fields) >= 2 && !fields.iter().any(text);
     if let Some(k) = (0..first).find(|&k| odd(&split[k])) {
         let found = format!("{} numbers in a row", split[k].len());
         let expected = format!("{width} columns, as {many} other rows have");
@@ -214,7 +222,7 @@ fn fill(points: &mut Points, body: &[Row], at: [usize; 2], width: usize) -> Resu
             between = true;
         } else if (0..2).all(|k| row.numbers[k] || lacks(k)) && (lacks(0) || lacks(1)) {
             points.no_value(row.line);
-        } else if row.numbers == [false; 2] || between {
+        } else if row.numbers == [false; 2] || between || row.begins_with_word() {
             if !between {
                 points.note(row.line.number, "a line of text after points: not used");
             }
@@ -307,6 +315,7 @@ mod tests {
         for (text, sections) in [
             (format!("{}\n\n{}", block(0.0), block(1.0)), vec![0, 9]),
             (format!("y;z\n{}y;z\n{}", block(0.0), block(1.0)), vec![0, 9]),
+            (format!("Profile 1\n{}Profile;2\n{}", block(0.0), block(1.0)), vec![0, 9]),
             (block(0.5).replace('\n', "\n\n"), vec![0]),
             (format!("{}# more\n9;1\n10;1\n", block(1.0)), vec![0]),
         ] {

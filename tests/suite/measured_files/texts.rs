@@ -231,7 +231,7 @@ struct Writing {
     head: Vec<&'static str>,
     missing: &'static str,
     line_end: &'static str,
-    /// How several profiles are separated: 0 blank line, 1 comment, 2 repeated titles, 3 a column of numbers.
+    /// How several profiles are separated: 0 blank line, 1 comment, 2 repeated titles, 3 a column of numbers, 4 a number of the profile.
     between: usize,
     encoding: usize,
 }
@@ -274,7 +274,7 @@ impl Writing {
             head,
             missing: one(random, &["NaN", "nan", "n/a", "1.#QNAN", "#N/A", "null"]),
             line_end: one(random, &["\n", "\n", "\r\n", "\r"]),
-            between: random.below(4),
+            between: random.below(5),
             encoding: if latin { 3 } else { one(random, &[0, 0, 1, 2]) },
         }
     }
@@ -317,6 +317,7 @@ impl Writing {
                     0 => lines.push(String::new()),
                     1 => lines.push(format!("# profile {k}")),
                     2 => lines.push(titles.clone()),
+                    4 => lines.push(format!("Profil{s}{k}")),
                     _ => {}
                 }
             }
@@ -368,7 +369,8 @@ fn random_texts_are_read_to_their_digits_or_their_advice_makes_them_read() -> Re
             ("unit", &*format!("'{}'", writing.unit.0)),
             ("section", "1"),
         ];
-        let options = "curve = 'interpolation'";
+        let axes = if random.below(2) == 0 { "\nmirror = false\nflip_z = false" } else { "" };
+        let options = &*format!("curve = 'interpolation'{axes}");
         let name = if writing.separator.trim().is_empty() { "a.txt" } else { "a.csv" };
         let mut outcome = None;
         // A text whose marks may mean either is written anew with decimal points, as its message says.
