@@ -109,11 +109,16 @@ fn wider_end_down(points: &[Point]) -> Option<(bool, String)> {
 /// Returns whether the mirror image of an upright rail about x = `axis` is the same rail down to [`TOUCHED`], to [`SAME_SHAPE`] and the
 /// sagitta of its polygon.
 pub(super) fn symmetric(points: &[Point], axis: f64) -> bool {
+    let around = outline(points).is_some();
+    // The point at which an outline closes may be there twice.
+    let points = match points {
+        [rest @ .., last] if around && distance(points[0], *last) == 0.0 => rest,
+        all => all,
+    };
     let n = points.len();
     if n < 3 {
         return false;
     }
-    let around = outline(points).is_some();
     let at = |k: usize| points[k % n];
     let edges = if around { n } else { n - 1 };
     let off = |p: &Point, k: usize| {
