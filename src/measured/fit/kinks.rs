@@ -10,19 +10,18 @@ const WINDOW: f64 = 2.5;
 /// Most steps of a window that are used, evenly picked. More steps do not sharpen a tangent, and windows over dense points
 /// would cost n².
 const MOST_IN_WINDOW: usize = 48;
-/// Fewest points for a tangent: a parabola needs three, and two more show whether the points lie on it. The ends of a file may have
+/// Fewest points for a tangent: a parabola needs three, and three more show whether the points lie on it. The ends of a file may have
 /// three.
-const LEAST_IN_WINDOW: usize = 5;
+const LEAST_IN_WINDOW: usize = 6;
 const LEAST_AT_END: usize = 3;
 /// Deviation of a parabola's slope at its end over m points of noise σ, in σ/(window √m): √192.
 const END_SLOPE: f64 = 13.86;
-/// Longest reach of these points, in windows: between points farther apart arcs look like corners, unless they lie on the parabolas to
-/// the last bit.
-const LONGEST: f64 = 1.2;
-/// Deviations of a turn beyond which it is no noise: one of 2 million is. Of few points more by the share of [`FEW`] to their number, as
-/// in Student's distribution.
+/// Longest reach of these points, in windows: between points farther apart arcs look like corners.
+const LONGEST: f64 = 2.0;
+/// Deviations of a turn beyond which it is no noise: one of 2 million is. Where few distances are free it takes twice as many at
+/// [`FEW`], like in Student's distribution.
 const SIGNIFICANT: f64 = 5.0;
-const FEW: f64 = 4.0;
+const FEW: f64 = 6.0;
 
 /// A corner at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +63,7 @@ pub(in crate::measured) fn kinks(points: &[Point], least: f64, size: f64) -> Vec
     let mut out: Vec<Kink> = Vec::new();
     for Turn { kink, noise, free, spread } in turns {
         // The noise of few points may be small by chance, beside bad points too.
-        let own = noise * (1.0 + FEW / free).powi(2);
+        let own = noise * (1.0 + (FEW / free).powi(2)).powi(2);
         let by_noise = SIGNIFICANT * spread * own.max(usual).sqrt();
         if kink.angle.abs() <= least.max(by_noise) {
             continue;
