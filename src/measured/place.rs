@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::Format;
 use super::ask::{OpenQuestion, name, wrong_unit};
 use super::clean::checks::{Finding, SAME_POINT, no_order, same};
+use super::clean::runs::Path;
 use super::options::{NamedOrigin, Options, Origin, Repair};
 use super::read::points::{DesignElement, ElementShape, Point, Points};
 use super::shape::{
@@ -94,13 +95,15 @@ pub(super) fn resolve(points: &mut Points, side: Side, options: &Options) -> Res
     let unit = unit(points, options, &mut transform.steps);
     transform.scale = [unit; 2];
     let stated = options.unit.is_some() || points.unit.is_some();
-    let wrong = wrong_unit(&transform.points(&points.at), points.applied * unit, stated);
+    // Rows that the instrument did not measure, and noise, tell nothing of axes and origin.
+    let judged = Points { at: Path::judged(&points.at, unit), ..points.clone() };
+    let wrong = wrong_unit(&transform.points(&judged.at), points.applied * unit, stated);
     // Further questions are found in the likeliest unit.
     let unit = wrong.as_ref().map_or(unit, |(_, likeliest)| *likeliest / points.applied);
     transform.scale = [unit; 2];
-    let (findings, open) = transform.turn(points, side, options);
+    let (findings, open) = transform.turn(&judged, side, options);
     let wrong_unit = wrong.map(|(error, _)| error);
-    let placed = transform.points(&points.at);
+    let placed = transform.points(&judged.at);
     let sorted = open.is_empty() && options.repair.contains(&Repair::Sort);
     if let Some(error) = no_order(&placed).filter(|_| wrong_unit.is_none() && !sorted) {
         return Err(error);
@@ -108,10 +111,10 @@ pub(super) fn resolve(points: &mut Points, side: Side, options: &Options) -> Res
     if outline(&placed).is_some() {
         transform.begin_at_foot(points, side);
     } else {
-        transform.reverse(&points.at);
+        transform.reverse(&judged.at);
     }
     if open.is_empty() && wrong_unit.is_none() {
-        transform.shift_origin(&points.at, side, options)?;
+        transform.shift_origin(&judged.at, side, options)?;
     }
     Ok(Placing { transform, findings, open, wrong_unit, stated })
 }

@@ -10,6 +10,7 @@ use wheelrail::profile::Section;
 use wheelrail::{Error, Profile, Result, Side, standards};
 
 mod curves;
+mod outliers;
 mod questions;
 mod slices;
 mod texts;

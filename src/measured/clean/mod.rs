@@ -1,5 +1,8 @@
 //! Checks measured points, and makes the repairs that the options allow.
 
 pub mod checks;
+mod course;
 mod loops;
+mod order;
 pub mod repairs;
+pub(super) mod runs;

@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
-use super::checks::{Fold, distance, folds, same, spikes};
+use super::checks::{distance, same};
 use super::loops;
+use super::order::{Fold, folds};
+use super::runs::Path;
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
 
@@ -67,7 +69,7 @@ fn drop_duplicates(points: &mut Vec<Point>) -> Vec<Point> {
 fn sort(points: &mut [Point]) -> Vec<Point> {
     let mut moved = Vec::new();
     let mut sorted_to = 0;
-    for fold in folds(points).into_iter().filter(|fold| fold.to > fold.from) {
+    for fold in folds(&Path::of(points)).into_iter().filter(|fold| fold.to > fold.from) {
         if fold.from >= sorted_to {
             sorted_to = sort_fold(points, fold, &mut moved);
         }
@@ -75,30 +77,93 @@ fn sort(points: &mut [Point]) -> Vec<Point> {
     moved
 }
 
-/// Sorts the points of one fold, and the points over which it runs back, along the direction of travel across the fold.
-/// Returns the index after the last sorted point.
+/// Sorts the points of one fold, and those over which it runs back, along the path that leads to the fold. Returns the index after
+/// the last sorted point.
 fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize {
-    let reach = fold.to - fold.from + 1;
-    let (mut low, mut high) = (fold.from.saturating_sub(reach), (fold.to + reach).min(points.len() - 1));
-    let (a, b) = (points[low], points[high]);
-    let along = |p: &Point| (p.x - a.x) * (b.x - a.x) + (p.z - a.z) * (b.z - a.z);
-    let (least, most) = (along(&points[fold.to]), along(&points[fold.from]));
-    while low > 0 && along(&points[low]) > least {
+    let mut track = Track::new(&points[..=fold.from]);
+    let mut along: Vec<f64> = Vec::new();
+    for (k, point) in points.iter().enumerate().skip(fold.from + 1) {
+        let at = track.walk_to(point);
+        if k > fold.to && at >= track.end() {
+            break;
+        }
+        along.push(at);
+    }
+    let high = fold.from + along.len();
+    let least = along.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut low = fold.from + 1;
+    let mut before: Vec<f64> = Vec::new();
+    while low > 0 {
+        let at = track.walk_to(&points[low - 1]);
+        if at < least {
+            break;
+        }
+        before.push(at);
         low -= 1;
     }
-    while high + 1 < points.len() && along(&points[high]) < most {
-        high += 1;
+    before.reverse();
+    let mut order: Vec<(f64, Point)> =
+        before.into_iter().chain(along).zip(points[low..=high].iter().copied()).collect();
+    order.sort_by(|p, q| p.0.total_cmp(&q.0));
+    for (slot, (_, point)) in points[low..=high].iter_mut().zip(order) {
+        if slot.number != point.number {
+            moved.push(point);
+        }
+        *slot = point;
     }
-    let before: Vec<usize> = points[low..=high].iter().map(|p| p.number).collect();
-    points[low..=high].sort_by(|p, q| along(p).total_cmp(&along(q)));
-    let after = &points[low..=high];
-    moved.extend(after.iter().zip(before).filter(|(p, number)| p.number != *number).map(|(p, _)| *p));
     high + 1
 }
 
+/// The smoothed path that leads to a fold, with a place on it that is walked from point to point.
+struct Track {
+    at: Vec<Point>,
+    /// Length of the path up to each vertex \[mm\].
+    length: Vec<f64>,
+    /// Vertex of the place.
+    near: usize,
+}
+
+impl Track {
+    /// Number of vertices ahead of the place that are looked at: noise may make the next one no nearer.
+    const AHEAD: usize = 8;
+
+    fn new(points: &[Point]) -> Self {
+        let at = Path::of(points).course.at;
+        let mut length = vec![0.0];
+        at.windows(2).for_each(|pair| length.push(length[length.len() - 1] + distance(&pair[0], &pair[1])));
+        Self { near: at.len().saturating_sub(1), at, length }
+    }
+
+    /// Returns the length of the whole path \[mm\].
+    fn end(&self) -> f64 {
+        self.length[self.length.len() - 1]
+    }
+
+    /// Walks to the place nearest to a point, and returns its length along the path \[mm\]; beyond the end along the last chord.
+    fn walk_to(&mut self, point: &Point) -> f64 {
+        let far = |k: usize| distance(&self.at[k], point);
+        loop {
+            let range =
+                self.near.saturating_sub(Self::AHEAD)..(self.near + Self::AHEAD + 1).min(self.at.len());
+            let nearest = range.min_by(|&a, &b| far(a).total_cmp(&far(b))).unwrap_or(self.near);
+            if nearest == self.near {
+                break;
+            }
+            self.near = nearest;
+        }
+        let last = self.at.len() - 1;
+        let (a, b) =
+            if self.near < last { (self.near, self.near + 1) } else { (last.saturating_sub(1), last) };
+        let chord = distance(&self.at[a], &self.at[b]);
+        let [p, q] = [&self.at[a], &self.at[b]];
+        let share = ((point.x - p.x) * (q.x - p.x) + (point.z - p.z) * (q.z - p.z)) / chord;
+        self.length[a] + share
+    }
+}
+
 fn remove_spikes(points: &mut Vec<Point>) -> Vec<Point> {
-    let at: Vec<usize> = spikes(points).iter().map(|spike| spike.at).collect();
-    drop_all(points, |k| at.binary_search(&k).is_ok())
+    let runs = Path::of(points).runs;
+    drop_all(points, |k| runs.iter().any(|run| (run.from..=run.to).contains(&k)))
 }
 
 /// Drops what lies beyond the only place where the path turns back, if it is short.

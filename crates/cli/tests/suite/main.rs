@@ -46,6 +46,7 @@ mod load_table;
 mod manual;
 mod march_cli;
 mod measure_cli;
+mod measured_cli;
 mod pages;
 mod profile_cli;
 mod programs;

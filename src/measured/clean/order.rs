@@ -1,0 +1,132 @@
+//! Finds where the smoothed path of measured points runs back.
+
+use super::checks::{Check, Finding, distance};
+use super::course::{Course, turn};
+use super::runs::Path;
+use crate::measured::read::points::Point;
+
+/// Turn \[rad\] at a vertex beyond which the path runs back, 120°: sharp edges of profiles turn by less than 100°, points in the wrong
+/// order by about 180°.
+pub(super) const BACKWARDS: f64 = 2.0 / 3.0 * std::f64::consts::PI;
+/// Least angle \[rad\] between the sides of a notch or of a thin blade, 4°. Narrower ones are a path that runs back over itself.
+const NARROWEST: f64 = 0.07;
+/// Fewest vertices on each side of a notch: fewer are points that were added at an end.
+const SIDE: usize = 2;
+
+/// The stretch of points `from`..=`to` between two reversals of the path. A single reversal has `from == to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::measured) struct Fold {
+    pub from: usize,
+    pub to: usize,
+}
+
+impl Fold {
+    /// Returns the number of points, before the fold, over which the path runs back.
+    fn overrun(&self, points: &[Point]) -> usize {
+        let [a, b] = [points[self.from], points[self.to]];
+        let along = |p: &Point| (p.x - b.x) * (a.x - b.x) + (p.z - b.z) * (a.z - b.z);
+        points[..self.from].iter().rev().take_while(|p| along(p) > 0.0).count()
+    }
+
+    /// Names the shorter part of the path on one side of a single reversal, as the file has it.
+    fn beyond(&self, points: &[Point]) -> String {
+        let (before, after) = (&points[..self.from], &points[self.from + 1..]);
+        let part = if after.len() <= before.len() { after } else { before };
+        let first = part.iter().min_by_key(|point| point.number).map(Point::place);
+        let last = part.iter().max_by_key(|point| point.number).map(Point::place);
+        match (first, last) {
+            (Some(first), Some(last)) if first != last => {
+                format!("what the file has from {first} to {last}: {} points", part.len())
+            }
+            (first, _) => first.unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn finding(&self, points: &[Point]) -> Finding {
+        let (first, last) = (&points[self.from], &points[self.to]);
+        match self.to - self.from {
+            0 => {
+                let beyond = self.beyond(points);
+                let found = format!("a path that turns back and does not return: beyond it lies {beyond}");
+                Finding::new(Check::TurnsBack, first, found)
+            }
+            1 if self.overrun(points) == 0 => {
+                Finding::new(Check::OutOfOrder, first, format!("the wrong order with {}", last.place()))
+            }
+            _ => Finding::new(Check::ZigZag, first, format!("a zig-zag back to {}", last.place())),
+        }
+    }
+}
+
+/// Finds where the path runs back. Runs off the curve do not count.
+pub(in crate::measured) fn folds(path: &Path) -> Vec<Fold> {
+    let back = reversals(&path.course.at);
+    let place = |fold: Fold| {
+        let [from, to] = ends(fold, &path.course, &path.sound);
+        Fold { from: path.on[from], to: path.on[to] }
+    };
+    paired(&back, path.course.at.len()).into_iter().map(place).collect()
+}
+
+/// Returns the points at the two vertices of a fold. Of a vertex that stands for several points it is the one where the path jumps
+/// back, or one in the middle if the path does not jump.
+fn ends(fold: Fold, course: &Course, points: &[Point]) -> [usize; 2] {
+    let [first, last] = [fold.from, fold.to].map(|vertex| course.points_of(vertex));
+    let middle = |of: &std::ops::Range<usize>| if of.len() > 2 { of.start + of.len() / 2 } else { of.start };
+    if fold.from < fold.to && fold.to <= fold.from + 2 && (course.merged[fold.from] || course.merged[fold.to])
+    {
+        let length = |k: &usize| distance(&points[*k], &points[*k + 1]);
+        let jump = (first.start..last.end - 1).max_by(|a, b| length(a).total_cmp(&length(b)));
+        return jump.map_or([first.start, last.start], |k| [k, k + 1]);
+    }
+    [middle(&first), middle(&last)]
+}
+
+/// Pairs the reversals of a path of `n` points, so that the stretches between two of a pair are short: an overhang at an end is
+/// one reversal alone, whose stretch is the overhang.
+fn paired(back: &[usize], n: usize) -> Vec<Fold> {
+    let alone = |k: usize| Fold { from: k, to: k };
+    let pairs = |of: &[usize]| -> Vec<Fold> {
+        of.chunks_exact(2).map(|pair| Fold { from: pair[0], to: pair[1] }).collect()
+    };
+    let overhang = |k: usize| k.min(n - 1 - k);
+    let stretch = |k: usize| back[k + 1] - back[k];
+    let between = |from: usize| (from..back.len() - 1).step_by(2).map(stretch).sum::<usize>();
+    match back {
+        [] => Vec::new(),
+        [only] => vec![alone(*only)],
+        [first, inner @ .., last] if back.len().is_multiple_of(2) => {
+            if overhang(*first) + between(1) + overhang(*last) < between(0) {
+                [vec![alone(*first)], pairs(inner), vec![alone(*last)]].concat()
+            } else {
+                pairs(back)
+            }
+        }
+        _ => {
+            // The reversal that is left alone moves on from pair to pair.
+            let mut sum = between(1);
+            let mut best = (sum + overhang(back[0]), 0);
+            for k in (2..back.len()).step_by(2) {
+                sum = sum + stretch(k - 2) - stretch(k - 1);
+                best = best.min((sum + overhang(back[k]), k));
+            }
+            let single = best.1;
+            [pairs(&back[..single]), vec![alone(back[single])], pairs(&back[single + 1..])].concat()
+        }
+    }
+}
+
+/// Returns the vertices where the path runs back: it turns by more than 120° there, and neither goes on to larger x on both sides, as a
+/// notch between blade and stock rail does, nor ends within a vertex.
+pub(super) fn reversals(at: &[Point]) -> Vec<usize> {
+    let (Some(first), Some(last)) = (at.first(), at.last()) else { return Vec::new() };
+    let way = (last.x - first.x).signum();
+    let back = |k: &usize| {
+        let [a, b, c] = [&at[*k - 1], &at[*k], &at[*k + 1]];
+        let turned = turn(a, b, c).abs();
+        let onwards =
+            way * (b.x - a.x) > 0.0 && way * (c.x - b.x) > 0.0 && turned < std::f64::consts::PI - NARROWEST;
+        turned > BACKWARDS && !(onwards && *k >= SIDE && *k + SIDE < at.len())
+    };
+    (1..at.len().saturating_sub(1)).filter(back).collect()
+}
