@@ -11,6 +11,7 @@ use nalgebra::Point2;
 
 use super::boundary::{BoundaryTracer, Ring};
 use crate::error::{Error, ErrorKind, Result};
+use crate::numerics::interval::Interval;
 
 /// Largest turn of the boundary along one edge \[rad\].
 const TURN_PER_EDGE: f64 = 0.4;
@@ -58,8 +59,6 @@ pub(super) struct EdgeLimits {
     pub(super) size: f64,
     /// Largest distance of the curve from an edge \[mm\].
     pub(super) chord_error: f64,
-    /// Factor, at most 1, by which all edges are shortened.
-    pub(super) share: f64,
 }
 
 /// A corner of a ring.
@@ -76,45 +75,65 @@ struct Wanted {
     length: f64,
 }
 
-/// Returns the nodes of each ring, in its order.
-///
-/// # Errors
-/// More than 40,000 edges, counted before any node is made.
-pub(super) fn nodes(
-    tracer: &mut BoundaryTracer<'_>,
-    rings: &[Ring],
+/// The edges that a component's boundary wants, before they are shortened.
+pub(super) struct Spacing<'r> {
+    rings: &'r [Ring],
     limits: EdgeLimits,
-) -> Result<Vec<Vec<BoundaryNode>>> {
-    let corners: Vec<Vec<RingCorner>> = rings.iter().map(corners_of).collect();
-    let circles = circles(rings);
-    let mut wanted: Vec<Vec<Wanted>> =
-        (0..rings.len()).map(|k| own_lengths(&rings[k], &corners[k], &circles[k], limits)).collect();
-    let protected: Vec<Vec<[f64; 2]>> =
-        (0..rings.len()).map(|k| protected(tracer, &rings[k], &corners[k], &wanted)).collect();
-    for (k, ring) in rings.iter().enumerate() {
-        narrow(ring, &corners[k], &protected[k], &circles[k], &mut wanted[k]);
+    corners: Vec<Vec<RingCorner>>,
+    /// For each sharp corner of a ring the two lengths of the polygon at which its edges end \[mm\].
+    protected: Vec<Vec<[f64; 2]>>,
+    /// Length of the edges at every sample of each ring \[mm\].
+    lengths: Vec<Vec<f64>>,
+}
+
+impl<'r> Spacing<'r> {
+    /// Finds the edges of a boundary. Cost: a millisecond; it grows with the square of the number of samples.
+    pub(super) fn new(tracer: &mut BoundaryTracer<'_>, rings: &'r [Ring], limits: EdgeLimits) -> Self {
+        let corners: Vec<Vec<RingCorner>> = rings.iter().map(corners_of).collect();
+        let circles = circles(rings);
+        let mut wanted: Vec<Vec<Wanted>> =
+            (0..rings.len()).map(|k| own_lengths(&rings[k], &corners[k], &circles[k], limits)).collect();
+        let protected: Vec<Vec<[f64; 2]>> =
+            (0..rings.len()).map(|k| protected(tracer, &rings[k], &corners[k], &wanted)).collect();
+        for (k, ring) in rings.iter().enumerate() {
+            narrow(ring, &corners[k], &protected[k], &circles[k], &mut wanted[k]);
+        }
+        let all: Vec<Wanted> = wanted.iter().flatten().filter(|w| w.length.is_finite()).copied().collect();
+        let length = |w: &Wanted| graded(&w.point, &all).min(limits.size);
+        let lengths = wanted.iter().map(|wanted| wanted.iter().map(length).collect()).collect();
+        Self { rings, limits, corners, protected, lengths }
     }
-    let all: Vec<Wanted> = wanted.iter().flatten().filter(|w| w.length.is_finite()).copied().collect();
-    let length = |w: &Wanted| limits.share * graded(&w.point, &all).min(limits.size);
-    let counts = rings.iter().zip(&wanted).map(|(ring, wanted)| {
-        let lengths: Vec<f64> = wanted.iter().map(length).collect();
-        EdgeCounts::new(ring, &lengths)
-    });
-    let counts: Vec<EdgeCounts<'_>> = counts.collect();
-    let edges: f64 = counts.iter().map(EdgeCounts::whole).sum();
-    if edges.is_nan() || edges > MOST_EDGES {
-        let found =
-            format!("a part of the patch that is so narrow that its boundary takes {edges:.0e} edges");
-        let advice =
-            "take another approach, a window that cuts more or less of the patch, or formats without it";
-        return Err(
-            Error::new("mesh", found, format!("at most {MOST_EDGES:e}"), advice).of_kind(ErrorKind::Limit)
-        );
+
+    /// Returns the nodes of each ring, in its order; `share`, at most 1, shortens all edges.
+    ///
+    /// # Errors
+    /// More than 40,000 edges, counted before any node is made.
+    pub(super) fn nodes(
+        &self,
+        tracer: &mut BoundaryTracer<'_>,
+        share: f64,
+    ) -> Result<Vec<Vec<BoundaryNode>>> {
+        let counts = self.rings.iter().zip(&self.lengths).map(|(ring, lengths)| {
+            let lengths: Vec<f64> = lengths.iter().map(|length| share * length).collect();
+            EdgeCounts::new(ring, &lengths)
+        });
+        let counts: Vec<EdgeCounts<'_>> = counts.collect();
+        let edges: f64 = counts.iter().map(EdgeCounts::whole).sum();
+        if edges.is_nan() || edges > MOST_EDGES {
+            let found =
+                format!("a part of the patch that is so narrow that its boundary takes {edges:.0e} edges");
+            let advice =
+                "take another approach, a window that cuts more or less of the patch, or formats without it";
+            return Err(Error::new("mesh", found, format!("at most {MOST_EDGES:e}"), advice)
+                .of_kind(ErrorKind::Limit));
+        }
+        let nodes = counts.iter().zip(&self.corners).zip(&self.protected);
+        Ok(nodes
+            .map(|((counts, corners), protected)| {
+                divided(tracer, counts, corners, protected, self.limits.chord_error)
+            })
+            .collect())
     }
-    let nodes = counts.iter().zip(corners).zip(protected);
-    Ok(nodes
-        .map(|((counts, corners), protected)| divided(tracer, counts, &corners, &protected, limits))
-        .collect())
 }
 
 fn corners_of(ring: &Ring) -> Vec<RingCorner> {
@@ -124,25 +143,46 @@ fn corners_of(ring: &Ring) -> Vec<RingCorner> {
 
 /// Returns, for every sample of each ring, the radius \[mm\] of the largest circle that touches the boundary there from inside, holds
 /// no sample of any ring and crosses no chord that faces it; infinite at corners.
+///
+/// Method: a circle reaches no farther than its diameter, so that samples are looked at in the order of their distance along the longer
+/// axis, until they and the chords from them lie beyond the smallest circle so far.
 fn circles(rings: &[Ring]) -> Vec<Vec<f64>> {
-    let points: Vec<Point2<f64>> =
-        rings.iter().flat_map(|ring| &ring.samples).map(|sample| sample.point).collect();
-    let circle = |ring: &Ring, k: usize| {
-        if ring.is_corner(k) {
-            return f64::INFINITY;
+    let of_ring = |k: usize| (0..rings[k].samples.len()).map(move |sample| (k, sample));
+    let mut all: Vec<(usize, usize)> = (0..rings.len()).flat_map(of_ring).collect();
+    let point = |(ring, sample): (usize, usize)| rings[ring].samples[sample].point;
+    let extent = |axis: usize| all.iter().fold(Interval::NONE, |range, at| range.with(point(*at)[axis]));
+    let axis = usize::from(extent(1).width() > extent(0).width());
+    all.sort_by(|a, b| point(*a)[axis].total_cmp(&point(*b)[axis]));
+    let longest = all.iter().map(|&(ring, sample)| rings[ring].step(sample)).fold(0.0, f64::max);
+    let mut circles: Vec<Vec<f64>> =
+        rings.iter().map(|ring| vec![f64::INFINITY; ring.samples.len()]).collect();
+    for (place, &at) in all.iter().enumerate() {
+        let (ring, here) = (&rings[at.0], point(at));
+        if ring.is_corner(at.1) {
+            continue;
         }
-        let (here, inward) = (ring.samples[k].point, ring.inward(k));
-        let radius = |other: &Point2<f64>| {
-            let to = other - here;
+        let inward = ring.inward(at.1);
+        let radius = &mut circles[at.0][at.1];
+        let mut look = |other: (usize, usize)| {
+            let to = point(other) - here;
+            if to[axis].abs() > 2.0 * *radius + longest {
+                return false;
+            }
             let depth = to.dot(&inward);
-            if depth > 0.0 { to.norm_squared() / (2.0 * depth) } else { f64::INFINITY }
+            if depth > 0.0 {
+                *radius = radius.min(to.norm_squared() / (2.0 * depth));
+            }
+            *radius = radius.min(rings[other.0].facing(other.1, here, &inward));
+            true
         };
-        let facing = rings
-            .iter()
-            .flat_map(|other| (0..other.samples.len()).map(move |j| other.facing(j, here, &inward)));
-        points.iter().map(radius).chain(facing).fold(f64::INFINITY, f64::min)
-    };
-    rings.iter().map(|ring| (0..ring.samples.len()).map(|k| circle(ring, k)).collect()).collect()
+        // From here on, and back.
+        for others in
+            [&mut all[place..].iter() as &mut dyn Iterator<Item = _>, &mut all[..place].iter().rev()]
+        {
+            others.take_while(|other| look(**other)).for_each(drop);
+        }
+    }
+    circles
 }
 
 /// Returns the corners before and after a sample. A ring without corners has none.
@@ -233,10 +273,10 @@ fn divided(
     counts: &EdgeCounts<'_>,
     corners: &[RingCorner],
     protected: &[[f64; 2]],
-    limits: EdgeLimits,
+    chord_error: f64,
 ) -> Vec<BoundaryNode> {
     let ring = counts.ring;
-    let fixed = fixed_places(ring, corners, protected, limits.chord_error);
+    let fixed = fixed_places(ring, corners, protected, chord_error);
     let least = if fixed.len() == 1 { LEAST_EDGES } else { 1.0 };
     let mut places = Vec::new();
     for (k, &from) in fixed.iter().enumerate() {
@@ -259,7 +299,7 @@ fn divided(
     if nodes.first().is_some_and(|node| node.tip.is_some()) {
         nodes.rotate_left(1);
     }
-    halved(tracer, ring, nodes, limits.chord_error)
+    halved(tracer, ring, nodes, chord_error)
 }
 
 /// Returns whether a place of a ring lies between two others, which may lie before its start or beyond its end.

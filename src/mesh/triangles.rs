@@ -12,7 +12,7 @@ use nalgebra::{Point2, Point3};
 use super::boundary::{BoundaryTracer, Ring};
 use super::delaunay::{self, MeshRegion};
 use super::smoothing::{angles, smooth};
-use super::spacing::{self, BoundaryNode, EdgeLimits};
+use super::spacing::{self, BoundaryNode, EdgeLimits, Spacing};
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch};
 use crate::placement::Placement;
@@ -44,7 +44,7 @@ const MOST_MADE: usize = 2_000_000;
 
 /// Number of edges around a thin part above which they take the triangulation longer than as many points elsewhere: its time grows
 /// with their square.
-const LONG_BOUNDARY: usize = 5_000;
+const LONG_BOUNDARY: usize = 1_000;
 
 /// Attempts at a component, each with shorter edges of the boundary than the one before.
 const ATTEMPTS: i32 = 6;
@@ -236,10 +236,9 @@ fn best(
 ) -> Result<(MeshRegion, Vec<Vec<BoundaryNode>>)> {
     let mut best: Option<(f64, MeshRegion, Vec<Vec<BoundaryNode>>)> = None;
     let mut made = 0;
+    let wanted = Spacing::new(tracer, rings, EdgeLimits { size, chord_error: CHORD_SHARE * size });
     for attempt in 0..ATTEMPTS {
-        let share = SHORTER.powi(attempt);
-        let limits = EdgeLimits { size, chord_error: CHORD_SHARE * size, share };
-        let mut chains = spacing::nodes(tracer, rings, limits)?;
+        let mut chains = wanted.nodes(tracer, SHORTER.powi(attempt))?;
         let region = meshed(tracer, rings, &mut chains, area, size, &mut made)?;
         let least = least_angle(&region, &sharp_nodes(&chains));
         if best.as_ref().is_none_or(|(before, ..)| least > *before) {

@@ -388,8 +388,19 @@ fn add_farthest(band: &Band, mirrored: bool, rows: &mut Rows) {
         let outward = |k: &usize| if branch == 0 { -rows[*k][1] } else { rows[*k][2] };
         let inner = 1..rows.len().saturating_sub(1);
         let farthest = inner.max_by(|p, q| outward(p).total_cmp(&outward(q)));
-        let between = farthest.map(|k| [rows[k - 1][0], rows[k + 1][0]]);
-        more.extend(between.and_then(|between| corners::turn_of_branch(band, branch, between)));
+        let rises = |k: usize| band.slope(branch, rows[k][0]) * [-1.0, 1.0][branch] > 0.0;
+        let turn = farthest.and_then(|k| {
+            // Two corners may nearly coincide: the turn then lies beyond the rows beside the farthest one.
+            let (mut low, mut high) = (k - 1, k + 1);
+            while rises(high) && high + 1 < rows.len() {
+                (low, high) = (high, high + 1);
+            }
+            while !rises(low) && low > 0 {
+                (low, high) = (low - 1, low);
+            }
+            corners::turn_of_branch(band, branch, [rows[low][0], rows[high][0]])
+        });
+        more.extend(turn);
     }
     for xi in more {
         rows.insert(rows.partition_point(|row| row[0] < xi), row(band, xi));

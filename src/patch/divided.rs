@@ -60,6 +60,8 @@ fn has_hollow_end(placement: &Placement, under: &Placement, approach: f64) -> bo
 pub(super) fn lines_reenter(placement: &Placement, approach: f64) -> bool {
     let (turned, rail) = (Turned::new(placement), &placement.rail().section);
     let wheel = turned.section;
+    // Where the bodies meet upright, none of the wheel faces the rail along their normal.
+    let Some(last) = wheel.pieces.len().checked_sub(1) else { return false };
     let rise = turned.tilt.re / turned.tilt.im.abs();
     let meets_rail = |end: usize, index: usize| {
         let (piece, outward) = (&wheel.pieces[index], [-1.0, 1.0][end]);
@@ -75,7 +77,7 @@ pub(super) fn lines_reenter(placement: &Placement, approach: f64) -> bool {
         })
     };
     let mut begins = std::iter::once(0).chain(wheel.steps.iter().copied());
-    let mut ends = wheel.steps.iter().copied().chain([wheel.pieces.len()]).map(|next| next - 1);
+    let mut ends = wheel.steps.iter().map(|next| next - 1).chain([last]);
     (turned.is_hollow(0) && begins.any(|k| meets_rail(0, k)))
         || (turned.is_hollow(1) && ends.any(|k| meets_rail(1, k)))
 }

@@ -11,6 +11,7 @@
 mod along_track;
 mod any_grid;
 mod around_the_wheel;
+mod bodies_beside;
 mod campaign;
 mod closed_forms;
 mod common;
@@ -20,6 +21,7 @@ mod conicity;
 mod continuity;
 mod cuts;
 mod doubts;
+mod extents;
 mod flange_backs;
 mod flood_fill;
 mod half_space;

@@ -208,6 +208,40 @@ fn a_corner_a_rounding_beside_a_tip_crosses_no_edges() {
     }
 }
 
+/// Steep ridges that press on a crown under much yaw: parts 30 mm long and some micrometres to tenths of a millimetre wide, across the axes.
+#[test]
+fn meshes_of_slivers_are_bounded() {
+    let (mut random, mut meshes) = (Random::new(65), 0);
+    // They are large: a quarter as many as of other kinds.
+    let scenes = campaign::scenes().div_ceil(4);
+    for number in 0..scenes {
+        let (slope, yaw) = (10f64.powf(random.between(0.3, 2.0)), random.between(-0.3, 0.3));
+        let delta = 10f64.powf(random.between(-2.0, -0.3));
+        let up = 3.0 * slope;
+        let text = format!(
+            "[rail]\nsegments = [{{ arc = {{ center = [0, -3000], radius = 3000, half = \"upper\", x = [-65, 65] }} }}]\n\
+             [wheel]\nradius = 460\nsegments = [{{ line = {{ from = [-3, {up:?}], to = [0, 0] }} }}, \
+             {{ line = {{ from = [0, 0], to = [3, {up:?}] }} }}]\n[contact]\noffset = 0\nyaw = {yaw:?}\n"
+        );
+        let case = scene::resolve(&scene::parse(&text, false).expect("a scene"), Path::new("."), "ridge");
+        let (_, placement) = contacts(&case.expect("a case")).expect("contacts").swap_remove(0);
+        let patch = whole(&placement, delta);
+        let name = format!("sliver {number}: slope {slope}, yaw {yaw}, δ = {delta}");
+        let in_time = InTime::begin();
+        let mesh = TriangleMesh::new(&placement, &patch, None);
+        drop(in_time);
+        match mesh {
+            Ok(mesh) => {
+                assert!(mesh.points.len() < 200_000, "{name}: {} points", mesh.points.len());
+                assert!((mesh.area(0) / patch.area() - 1.0).abs() < 0.01, "{name}: {}", mesh.area(0));
+                meshes += 1;
+            }
+            Err(error) => assert!(error.place == "mesh" && !error.advice.is_empty(), "{name}: {error}"),
+        }
+    }
+    assert!(2 * meshes > scenes, "{meshes} meshes");
+}
+
 /// Patches with cusps at the ends of profiles, thin parts and several parts: random chains, under windows that cut.
 #[test]
 fn random_chains_keep_their_angles() {

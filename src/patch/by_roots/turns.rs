@@ -15,8 +15,8 @@ const LEVEL: f64 = 1e-10;
 /// Width, as a share of the first range, up to which a range is not halved again: a body ends or steps there.
 const SHORTEST: f64 = 1e-14;
 
-/// Width, as a share of the first range, up to which a range is not halved again where no bounds are known: a surface steps or stands
-/// upright there, normals of a roller meet a sheet of the wheel that others hide from C, or a body is missing at both ends.
+/// Width, as a share of the first range, up to which a range without C is not halved again where no bounds are known: a surface steps or
+/// stands upright there, normals of a roller meet a sheet of the wheel that others hide from C, or a body is missing at both ends.
 const UNKNOWN: f64 = 1.0 / 512.0;
 
 /// Number of ranges after which none is halved again: a hundred times those of usual pairs.
@@ -149,7 +149,7 @@ impl LeastGap<'_, '_> {
     /// Returns what bounds of the least gap's slope prove of it between two places; `None` where they prove nothing.
     fn between(&self, [a, b]: [&LowestPlace; 2]) -> Option<Between> {
         if a.is_missing() || b.is_missing() {
-            let missing = a.is_missing() && b.is_missing() && self.share([a, b]) <= UNKNOWN;
+            let missing = a.is_missing() && b.is_missing() && self.is_narrow([a, b]);
             return missing.then_some(Between::Missing);
         }
         let (slopes, Interval { low, high }) = self.depths([a, b]);
@@ -169,7 +169,12 @@ impl LeastGap<'_, '_> {
 
     /// Whether nothing more is to be known between two places.
     fn is_unknown(&self, slopes: Interval, places: [&LowestPlace; 2]) -> bool {
-        slopes == Interval::ALL && self.share(places) <= UNKNOWN
+        slopes == Interval::ALL && self.is_narrow(places)
+    }
+
+    /// Whether two places are too near to each other for what lies between to count without bounds. C, which is in every patch, counts.
+    fn is_narrow(&self, [a, b]: [&LowestPlace; 2]) -> bool {
+        self.share([a, b]) <= UNKNOWN && !Interval::new(a.xi, b.xi).surrounds(0.0)
     }
 
     /// Returns bounds of the slope of the least gap between two places, and of the least gap less δ \[mm\].
