@@ -1,7 +1,7 @@
 //! The command line, with one file for each command.
 //!
 //! Exit codes: 0 done, 1 a geometric "no" (infeasible contact, empty patch, failed check), 2 bad input. Data go to stdout,
-//! progress and messages to stderr. Ctrl-C and SIGTERM give 130 and 143.
+//! progress and messages to stderr. Ctrl-C, SIGTERM and SIGHUP give 130, 143 and 129.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
 

@@ -1,5 +1,5 @@
-//! Ctrl-C and SIGTERM: unfinished outputs are removed from the disk, and the exit code is that of shells, 128 + signal: 130
-//! and 143.
+//! Ctrl-C, SIGTERM and SIGHUP, which a terminal that closes sends: unfinished outputs are removed from the disk, and the exit code is that
+//! of shells, 128 + signal: 130, 143 and 129.
 
 use std::sync::Mutex;
 
@@ -10,16 +10,28 @@ static ENDING: Mutex<()> = Mutex::new(());
 /// cleans up.
 #[cfg(unix)]
 pub(super) fn watch() {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     let wait = || {
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
+        if !is_ignored(SIGHUP) {
+            drop(signals.add_signal(SIGHUP));
+        }
         let Some(signal) = signals.forever().next() else { return };
         let _ending = ENDING.lock();
         wheelrail::files::discard_all();
         std::process::exit(128 + signal);
     };
     drop(std::thread::Builder::new().name("signals".into()).spawn(wait));
+}
+
+/// Whether the caller has this program ignore a signal, as `nohup` does with SIGHUP; true where the system does not tell.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_none_or(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
 /// Does nothing: on other systems Ctrl-C ends the program at once, and the next run cleans up.
