@@ -395,7 +395,7 @@ fn points_apart(case: &Case) -> Vec<String> {
             let apart = length / (record.points_used.max(2) - 1) as f64;
             if apart > FARTHEST_POINTS {
                 let side = side.map_or_else(String::new, |side| format!("{side} side: "));
-                out.push(format!("{side}{}: points {apart:.2} mm apart in the mean", profile.name));
+                out.push(format!("{side}{}: points {apart:.2} mm apart in the mean", profile.title()));
             }
         }
     }

@@ -76,7 +76,7 @@ impl SideProfiles {
 
     /// Names rail and wheel, as a title: "60E1 under S1002".
     pub fn names(&self) -> String {
-        format!("{} under {}", self.pair.rail().name, self.pair.wheel().name)
+        format!("{} under {}", self.pair.rail().title(), self.pair.wheel().title())
     }
 }
 

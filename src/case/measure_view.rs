@@ -1,6 +1,7 @@
 //! What the page of measured profiles shows.
 
 use crate::export::{MeasuredPage, MeasuresPage};
+use crate::files::short_names;
 use crate::measure::{MeasureOptions, MeasureRow, Overlay, Quantity, RowColumns, in_micrometres, overlay};
 use crate::profile::{Profile, trace};
 
@@ -14,23 +15,29 @@ pub fn measures_page(
     options: &MeasureOptions,
     columns: RowColumns,
 ) -> MeasuresPage {
-    let about =
-        nominal.map_or_else(|| "without a nominal".to_owned(), |nominal| format!("nominal {}", nominal.name));
+    let about = nominal
+        .map_or_else(|| "without a nominal".to_owned(), |nominal| format!("nominal {}", nominal.title()));
     let about =
         columns.spread.map_or_else(|| about.clone(), |spread| format!("{about}; intervals: {spread}"));
-    let title = match rows {
-        [(row, _)] => row.file.clone(),
+    let names = short_names(&rows.iter().map(|(row, _)| row.file.as_str()).collect::<Vec<_>>());
+    let title = match names.as_slice() {
+        [name] => (*name).to_owned(),
         _ => format!("{} profiles", rows.len()),
     };
     MeasuresPage {
         title,
         about,
         version: env!("CARGO_PKG_VERSION").into(),
-        files: rows.iter().map(|(row, profile)| file(row, *profile, nominal, options, columns)).collect(),
+        files: rows
+            .iter()
+            .zip(&names)
+            .map(|((row, profile), name)| file(name, row, *profile, nominal, options, columns))
+            .collect(),
     }
 }
 
 fn file(
+    name: &str,
     row: &MeasureRow,
     profile: Option<&Profile>,
     nominal: Option<&Profile>,
@@ -66,14 +73,15 @@ fn file(
         let value = format!("{}\u{a0}{}", in_micrometres(value), quantity.unit());
         Some([quantity.text().into(), value, off, interval])
     });
+    let shown = |text: String| if row.file.is_empty() { text } else { text.replace(&row.file, name) };
     MeasuredPage {
-        name: row.file.clone(),
+        name: name.to_owned(),
         nominal: drawn.into_iter().flatten().collect(),
         measured: measured.into_iter().flatten().collect(),
         differences: differences.into_iter().flatten().flatten().collect(),
         alignment,
         measures: values.collect(),
         broken: columns.limits.map_or_else(Vec::new, |limits| row.broken(limits)),
-        findings: row.findings(),
+        findings: row.findings().into_iter().map(shown).collect(),
     }
 }

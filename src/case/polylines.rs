@@ -26,7 +26,7 @@ pub(super) fn pairs(profiles: &Profiles) -> Vec<PagePair> {
 pub(crate) fn polyline(profile: &Profile) -> PageProfile {
     let points = thinned(&points_along(profile, STEP), MOST_POINTS);
     let (x, z) = points.iter().map(|at| (at.x, at.y)).unzip();
-    PageProfile { name: profile.name.clone(), x, z }
+    PageProfile { name: profile.title().to_owned(), x, z }
 }
 
 /// Gives at most about `most` of some items, evenly chosen, the first and the last among them.

@@ -11,7 +11,7 @@ const STEP: f64 = 0.1;
 pub fn profile_picture(profile: &Profile, about: &str, points: &[[f64; 2]]) -> String {
     let marks = trace(profile, STEP);
     ProfilePicture {
-        title: &profile.name,
+        title: profile.title(),
         about,
         points,
         curve: &marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect::<Vec<_>>(),

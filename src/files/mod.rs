@@ -16,6 +16,6 @@ mod temporary;
 pub use file::{NewFile, make_folder, write_file};
 pub use folder::{Folder, FolderPart};
 pub use kept::{KeptFolder, files_in};
-pub use names::Names;
+pub use names::{Names, file_name, short_names};
 pub use read::{read_bytes, read_text};
 pub use temporary::discard_all;

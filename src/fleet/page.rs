@@ -6,7 +6,7 @@ use super::listed::{Listed, Pairs};
 use super::pair::{self, FleetRow, numbers, wheelset};
 use super::part::{self, FleetPart};
 use super::profiles::Shelf;
-use super::tally::{FleetTally, WorstPair, rails};
+use super::tally::{FleetTally, WorstPair, by_names, rails};
 use crate::case::{Case, DoubtSet, SweepColumns, about_bodies, polyline, sweep_page};
 use crate::error::{Error, Result};
 use crate::export::{FleetPage, FleetWorst, PageProfile, SEPARATOR};
@@ -112,7 +112,7 @@ fn page(fleet: &Listed, title: &str, tally: &FleetTally, rail: Option<PageProfil
         "right_hollow_mm",
     ];
     let worst = tally.worst.iter().enumerate().map(|(k, WorstPair { row, .. })| FleetWorst {
-        cells: [row.names[0].clone(), rails(row)]
+        cells: [row.names[0].clone(), by_names(row, &rails(row))]
             .into_iter()
             .chain(shown.map(|name| value(row, name)))
             .collect(),

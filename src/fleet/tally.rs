@@ -8,6 +8,7 @@ use super::listed::PairNumber;
 use super::pair::{CELL, FleetRow, POSITIONS, STEP, numbers};
 use super::part::FleetPart;
 use crate::export::{FleetDistribution, FleetHeat};
+use crate::files::file_name;
 
 /// Pairs that have pages of their own.
 const WORST: usize = 10;
@@ -140,7 +141,11 @@ impl FleetTally {
             if !row.finding.is_empty() {
                 self.with_finding += 1;
                 if self.findings.len() < SHOWN {
-                    self.findings.push([row.names[0].clone(), rails(row), row.finding.clone()]);
+                    self.findings.push([
+                        row.names[0].clone(),
+                        by_names(row, &rails(row)),
+                        by_names(row, &row.finding),
+                    ]);
                 }
             }
         }
@@ -195,6 +200,15 @@ impl FleetTally {
             rail: None,
         })
     }
+}
+
+/// Returns a text of a row with the names of its files in place of their paths.
+pub(super) fn by_names(row: &FleetRow, text: &str) -> String {
+    let paths = row.names[1..].iter();
+    paths.fold(
+        text.to_owned(),
+        |text, path| if path.is_empty() { text } else { text.replace(path, file_name(path)) },
+    )
 }
 
 /// Names the rails of a row: one name, where both are the same.

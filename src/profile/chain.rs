@@ -10,6 +10,7 @@ use super::polynomial::Polynomial;
 use super::segment::Segment;
 use super::station::Station;
 use crate::error::{Error, Result};
+use crate::files::file_name;
 
 /// A chain of segments, travelled from left to right, with its name and source.
 ///
@@ -104,6 +105,11 @@ impl Profile {
     ) -> Self {
         let extent = extent(&segments);
         Self { name, source, segments, drawn, closings, extent }
+    }
+
+    /// Returns the name for titles and pages: of a profile of a file that of the file, without its folders.
+    pub fn title(&self) -> &str {
+        file_name(&self.name)
     }
 
     /// Returns the segments from left to right.

@@ -204,8 +204,8 @@ impl MeasureArguments {
         let Overlay { nominal: drawn, measured, differences, alignment } =
             overlay(own.profile(), side, nominal.profile(), &question.options)?;
         let svg = OverlayPicture {
-            title: &own.profile().name,
-            about: &format!("nominal {}{SEPARATOR}{}", nominal.profile().name, alignment.text),
+            title: own.profile().title(),
+            about: &format!("nominal {}{SEPARATOR}{}", nominal.profile().title(), alignment.text),
             nominal: &drawn,
             measured: &measured,
             differences: &differences,

@@ -206,14 +206,15 @@ fn pages_are_used_by_keyboard_at_three_widths_light_and_dark() {
     ];
     let mut pages: Vec<PathBuf> =
         runs.iter().map(|(name, scene)| run(name, scene, 0).join("view.html")).collect();
-    let [scene, crossing, fleet, wheels, prw] = [
-        "scenes/wheelset.toml",
-        "crossing/crossing.toml",
-        "fleet/fleet.toml",
-        "fleet/wheelsets.csv",
-        "profiles/S1002.prw",
-    ]
-    .map(example);
+    let [scene, crossing, fleet, wheels] =
+        ["scenes/wheelset.toml", "crossing/crossing.toml", "fleet/fleet.toml", "fleet/wheelsets.csv"]
+            .map(example);
+    // Whatever the path of this repository, that of a measured file is long, and so is its name.
+    let deep = folder("keys").join("a_folder_of_forty_characters_or_thereabouts/".repeat(4));
+    std::fs::create_dir_all(&deep).unwrap();
+    let prw = deep.join(format!("{}.prw", "a_long_name".repeat(12)));
+    std::fs::copy(root.join("profiles/S1002.prw"), &prw).unwrap();
+    let prw = prw.display().to_string();
     let commands: [(&str, &[&str]); 5] = [
         ("sweep.html", &["sweep", &scene, "--lateral", "-8:8:0.5", "--html"]),
         ("crossing.html", &["march", &crossing, "--along", "-100:300:20", "--html"]),
@@ -226,7 +227,11 @@ fn pages_are_used_by_keyboard_at_three_widths_light_and_dark() {
         let mut program = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
         let output = program.args(arguments).arg(&out).output().unwrap();
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        pages.push(if out.is_dir() { out.join("fleet.html") } else { out });
+        let page = if out.is_dir() { out.join("fleet.html") } else { out };
+        let text = std::fs::read_to_string(&page).unwrap();
+        assert!(!text.contains(folder("").to_str().unwrap()), "{name}: a path");
+        assert!(!text.contains(root.to_str().unwrap()), "{name}: a path");
+        pages.push(page);
     }
     let pages: Vec<&str> = pages.iter().map(|page| page.to_str().unwrap()).collect();
     check("check_keys.mjs", &pages, "");
