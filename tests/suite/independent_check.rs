@@ -14,9 +14,6 @@ use wheelrail_report::verification::{Subject, Verified, built_in_pairs, verify};
 const FLOOR: f64 = 1e-12;
 const BRACKET: f64 = 1e-9;
 
-/// Time for one scene \[s\]: 2 s are promised in release, on an idle machine.
-const SECONDS: f64 = 2.0;
-
 /// The check of a placed pair against the point-wise evaluator over `own`, with a mutation of its answers.
 fn checked(
     placement: &Placement,
@@ -41,7 +38,6 @@ fn assert_agrees(Verified { name, report }: &Verified) {
     assert!(report.bracket_mm > 0.0 && report.bracket_mm < BRACKET, "{name}\n{report}");
     assert!(report.distances.violation.compared > 0, "{name}\n{report}");
     assert!(report.distances.bodies_mm > 0.0, "{name}\n{report}");
-    assert!(report.seconds < SECONDS, "{name}: {} s", report.seconds);
 }
 
 fn subject(reference: &ReferenceFile) -> Subject {

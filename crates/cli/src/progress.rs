@@ -136,26 +136,31 @@ impl Drop for Progress {
 mod tests {
     use super::*;
 
-    /// Returns the lines reported on two steps that take 300 ms each.
-    fn lines(patience: Duration) -> Vec<String> {
-        let lines = Arc::new(Mutex::new(Vec::new()));
+    /// Returns the lines reported on two steps, each of which takes until there is a line on it, if `waits` is set.
+    fn lines(patience: Duration, waits: bool) -> Vec<String> {
+        let lines = Arc::new(Mutex::new(Vec::<String>::new()));
         let told = Arc::clone(&lines);
         let progress =
             Progress::told(patience, "one", move |line| told.lock().unwrap().push(line.to_owned()));
-        thread::sleep(Duration::from_millis(300));
+        let wait = |step: &str| {
+            while waits && !lines.lock().unwrap().iter().any(|line| line.starts_with(step)) {
+                thread::sleep(Duration::from_millis(1));
+            }
+        };
+        wait("one (");
         progress.share("two", 0.5);
-        thread::sleep(Duration::from_millis(300));
+        wait("two (");
         drop(progress);
         lines.lock().unwrap().clone()
     }
 
     #[test]
     fn every_long_step_is_told_and_short_work_is_not() {
-        let told = lines(Duration::from_millis(30));
+        let told = lines(Duration::from_millis(30), true);
         for step in ["one (", "two ("] {
             let seconds = |line: &String| line.strip_prefix(step)?.strip_suffix(" s)")?.parse::<u64>().ok();
             assert!(told.iter().any(|line| seconds(line).is_some()), "{told:?}");
         }
-        assert!(lines(Duration::from_secs(60)).is_empty());
+        assert!(lines(Duration::from_secs(60), false).is_empty());
     }
 }

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use wheelrail::internal::Random;
 
 use crate::campaign;
+use crate::in_time::InTime;
 
 use wheelrail::case::{Run, SILENT};
 use wheelrail::scene::{self, Scene};
@@ -16,8 +17,10 @@ const SCENES: u64 = 20_000;
 /// Seed of the mutations, printed with every failure.
 const SEED: u64 = 0x5EED_0F5C_E4E5;
 
-/// No scene of at most [`POINTS`] points may take longer, on a loaded machine.
-const LONGEST: Duration = Duration::from_secs(20);
+/// Runs that are to be caught alive, the moments at which they are killed, and the most runs until then.
+const CAUGHT: u32 = 10;
+const STEPS: u32 = 50;
+const MOST_RUNS: u32 = 1000;
 
 /// Larger grids are rejected by the program or, below its own limit, not run here.
 const POINTS: usize = 20_000;
@@ -182,16 +185,14 @@ fn mutated(dice: &mut Random, base: &str) -> String {
 /// Reads and runs a scene; `Ok(true)` when it gave a result.
 fn attempt(text: &str, json: bool) -> Result<bool, String> {
     let Ok(scene) = scene::parse::<Scene>(text, json) else { return Ok(false) };
-    let start = Instant::now();
+    let in_time = InTime::begin();
     let Ok(case) = scene::resolve(&scene, Path::new("."), "hostile") else { return Ok(false) };
     let points = |axis: &Option<Vec<f64>>| axis.as_ref().map_or(usize::MAX, Vec::len);
     if points(&case.axes().xi).saturating_mul(points(&case.axes().eta)) > POINTS {
         return Ok(false);
     }
     let Ok(run) = Run::new(case, SILENT) else { return Ok(false) };
-    if start.elapsed() > LONGEST {
-        return Err(format!("took {:?}", start.elapsed()));
-    }
+    drop(in_time);
     for part in &run.parts {
         let analysis = &part.analysis;
         let numbers = analysis.patch.iter().flat_map(|p| &p.components).flat_map(|c| {
@@ -281,11 +282,13 @@ fn a_kill_at_any_moment_leaves_the_old_or_the_new_folder_whole() {
     let start = Instant::now();
     assert!(run(0.01).status().is_ok_and(|s| s.success()));
     let duration = start.elapsed();
-    let (mut before, mut killed) = (0.01, 0);
-    for k in 0..60u32 {
+    let (mut before, mut killed, mut k) = (0.01, 0, 0);
+    while killed < CAUGHT || k < STEPS {
         let approach = 0.02 + 0.001 * f64::from(k);
         let mut child = run(approach).spawn().expect("the program");
-        std::thread::sleep(duration * k / 50);
+        std::thread::sleep(duration * (k % STEPS) / STEPS);
+        k += 1;
+        assert!(k < MOST_RUNS, "only {killed} of {k} runs were caught alive");
         killed += u32::from(child.try_wait().is_ok_and(|s| s.is_none()));
         let _ = child.kill();
         let _ = child.wait();
@@ -293,7 +296,6 @@ fn a_kill_at_any_moment_leaves_the_old_or_the_new_folder_whole() {
         assert!(now == before || now == approach, "neither {before} nor {approach} but {now}");
         before = now;
     }
-    assert!(killed > 10, "only {killed} runs were caught alive");
     // The next run clears what the killed ones left.
     assert!(run(0.01).status().is_ok_and(|s| s.success()));
     let left: Vec<_> =
@@ -301,7 +303,7 @@ fn a_kill_at_any_moment_leaves_the_old_or_the_new_folder_whole() {
     assert_eq!(left.len(), 2, "{left:?}");
 }
 
-/// Ctrl-C and SIGTERM at random moments: the exit code of shells, the folder as it was or new, and nothing beside it.
+/// Ctrl-C, SIGTERM and SIGHUP at random moments: the exit code of shells, the folder as it was or new, and nothing beside it.
 #[test]
 #[cfg(unix)]
 fn signals_leave_the_old_or_the_new_folder_and_nothing_else() {
@@ -315,10 +317,14 @@ fn signals_leave_the_old_or_the_new_folder_and_nothing_else() {
     let start = Instant::now();
     assert!(run(0.01).status().is_ok_and(|s| s.success()));
     let duration = start.elapsed();
-    let (mut dice, mut before, mut ended) = (Random::new(SEED), 0.01, 0);
-    for k in 0..campaign::scenes() as u32 {
+    let signals = [("INT", 130), ("TERM", 143), ("HUP", 129)];
+    let (mut dice, mut before, mut ended, mut k) = (Random::new(SEED), 0.01, [0; 3], 0);
+    while ended.contains(&0) || k < campaign::scenes() as u32 {
         let approach = 0.02 + 1e-5 * f64::from(k);
-        let (name, code) = *dice.pick(&[("INT", 130), ("TERM", 143)]);
+        let signal = k as usize % signals.len();
+        let (name, code) = signals[signal];
+        k += 1;
+        assert!(k < MOST_RUNS || !ended.contains(&0), "runs caught at work: {ended:?}");
         let mut child = run(approach).spawn().expect("the program");
         std::thread::sleep(duration.mul_f64(dice.uniform()));
         let kill = Command::new("kill")
@@ -333,13 +339,43 @@ fn signals_leave_the_old_or_the_new_folder_and_nothing_else() {
         // A signal before the program listens ends it at once, and before it has made anything.
         let at_once = status.code().is_none() && now == before;
         assert!(status.success() || status.code() == Some(code) || at_once, "SIG{name}: {status}");
-        ended += u32::from(status.code() == Some(code));
+        ended[signal] += u32::from(status.code() == Some(code));
         before = now;
         let left: Vec<_> =
             std::fs::read_dir(&folder).expect("the folder").flatten().map(|e| e.file_name()).collect();
         assert_eq!(left.len(), 2, "SIG{name}, {status}: {left:?}");
     }
-    assert!(ended > 3, "only {ended} runs were caught at work");
+}
+
+/// `nohup` has a program ignore SIGHUP, and so it goes on.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_under_nohup_goes_on_when_its_terminal_closes() {
+    let folder = scratch("nohup");
+    let out = folder.join("out");
+    let mut child = Command::new("nohup")
+        .arg(env!("CARGO_BIN_EXE_wheelrail"))
+        .arg("run")
+        .arg(scene_file(&folder, 0.03))
+        .arg("--out")
+        .arg(&out)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("nohup");
+    let id = child.id().to_string();
+    let ignores = || {
+        let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")?.trim().chars().last());
+        mask.and_then(|digit| digit.to_digit(16)).is_some_and(|digit| digit & 1 == 1)
+    };
+    // Before `nohup` has said so, a signal would end it.
+    while !ignores() && child.try_wait().is_ok_and(|status| status.is_none()) {}
+    while child.try_wait().is_ok_and(|status| status.is_none()) {
+        let _ = Command::new("kill").arg("-HUP").arg(&id).stderr(Stdio::null()).status();
+    }
+    assert!(child.wait().is_ok_and(|status| status.success()) && whole(&out) == 0.03);
 }
 
 #[test]

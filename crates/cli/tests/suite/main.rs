@@ -42,6 +42,8 @@ mod conicity_cli;
 mod doubts_cli;
 mod fleet_cli;
 mod hostile;
+#[path = "../../../../tests/suite/in_time.rs"]
+mod in_time;
 mod load_table;
 mod manual;
 mod march_cli;

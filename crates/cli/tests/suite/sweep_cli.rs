@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -172,11 +172,7 @@ fn no_command_opens_a_file_twice() {
         let mut child = Command::new(env!("CARGO_BIN_EXE_wheelrail"));
         let child = child.current_dir(here).args([command, "scene.toml"]).args(arguments);
         let mut child = child.stdout(Stdio::null()).spawn().unwrap();
-        let start = Instant::now();
-        while child.try_wait().unwrap().is_none() && start.elapsed().as_secs() < 60 {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        child.kill().unwrap();
+        // A program that opens a pipe again never ends, and neither does this test.
         assert_eq!(child.wait().unwrap().code(), Some(0), "{command} waits for a file that it has read");
     }
     assert!(here.join("out/position-0005/boundary.csv").exists());
@@ -241,23 +237,18 @@ fn a_killed_sweep_leaves_what_was_there_and_the_next_one_clears_up() {
 #[test]
 fn a_sweep_ends_with_its_reader() {
     let folder = folder("");
-    // A minute's work, and more.
-    let mut sweep = Command::new(env!("CARGO_BIN_EXE_wheelrail"))
+    // Minutes of work, of which a processor may do one.
+    let mut sweep = Command::new("bash")
         .current_dir(folder.path())
-        .args(["sweep", "scene.toml", "--lateral", "-8:8:0.000004"])
+        .args(["-c", "ulimit -t 60; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_wheelrail")])
+        .args(["sweep", "scene.toml", "--lateral", "-8:8:0.000002"])
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let start = Instant::now();
     let mut line = String::new();
     let mut reader = std::io::BufReader::new(sweep.stdout.take().unwrap());
     std::io::BufRead::read_line(&mut reader, &mut line).unwrap();
     assert!(line.starts_with("lateral_mm,"), "{line}");
     drop(reader);
-    while sweep.try_wait().unwrap().is_none() && start.elapsed().as_secs() < 20 {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let code = sweep.try_wait().unwrap().map(|status| status.code());
-    sweep.kill().unwrap();
-    assert_eq!(code, Some(Some(0)), "still at work");
+    assert_eq!(sweep.wait().unwrap().code(), Some(0), "still at work");
 }
