@@ -4,14 +4,18 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::conicity_doubts::{ConicityBasis, kinds_at};
 use super::conicity_noise::{Noise, Uncertainty, uncertainty};
+use super::doubts::DoubtSet;
 use super::input::{Arrangement, Case};
+use super::landmarks::{Landmarks, SideLandmarks};
+use super::tally::Tally;
 use crate::error::{Error, ErrorKind, Result, finite, in_order};
 use crate::placement::Pair;
 use crate::profile::trace;
 use crate::search::{
-    AMPLITUDE, Conicity, ContactBand, GeometryAt, KeyFigures, NoConicity, Roll, TrackSide, TwoStep,
-    WheelsetOnTrack, active_faces, gauge, geometry_over,
+    AMPLITUDE, Conicity, ContactBand, GeometryAt, KeyFigures, NONLINEARITY, NoConicity, Roll, TrackSide,
+    TwoStep, WheelsetOnTrack, active_faces, gauge, geometry_over,
 };
 
 /// Columns of the functions over the lateral displacement, with their definitions. Names that a sweep has mean the same there, except
@@ -47,6 +51,12 @@ pub const FUNCTIONS: [(&str, &str); 17] = [
     ("right_contact_angle_rad", "right contact angle, + at a flange"),
     ("right_rolling_radius_mm", "right rolling radius"),
 ];
+
+/// The column of doubts beside [`FUNCTIONS`], with its definition.
+pub const DOUBT: (&str, &str) = (
+    "doubt",
+    "what is possible at the contacts of this displacement but seldom meant, by words with a space between two",
+);
 
 /// Key figures with their definitions.
 pub const KEY_FIGURES: [(&str, &str); 17] = [
@@ -115,6 +125,8 @@ pub struct ConicityMap {
 pub struct ConicityReport {
     /// The values of each of [`FUNCTIONS`] over the displacements; NaN where there is none.
     pub functions: [Vec<f64>; FUNCTIONS.len()],
+    /// The doubts about the lowest contacts at each displacement.
+    pub doubts: Vec<DoubtSet>,
     /// The values of [`KEY_FIGURES`]; NaN where there is none.
     pub key_figures: [f64; KEY_FIGURES.len()],
     /// Equivalent conicity over gauge and amplitude.
@@ -184,9 +196,13 @@ pub fn contact_geometry(
     // The nonlinearity parameter needs 4 mm, whatever is asked for.
     let table = Conicity::new(system, options.amplitude.max(4.0), roll)?;
     let found = geometry_over(system, &lateral, roll)?;
-    let two_step = two_step_of(system, &lateral, options.step, roll)?;
-    let functions = functions(system, &lateral, &found, &table, two_step.as_ref());
-    let (key_figures, mut findings) = key_figures(system, pairs, &table, two_step.as_ref(), roll)?;
+    let basis = ConicityBasis::over(system, &table, [options.amplitude, options.step], roll)?;
+    let functions = functions(system, &lateral, &found, &table, basis.two_step());
+    let (key_figures, mut findings) = key_figures(system, pairs, &table, basis.two_step(), roll)?;
+    let marks = |pair: &Pair| Landmarks::new(pair);
+    let landmarks = SideLandmarks::new(marks(pairs[1]), Some(marks(pairs[0])));
+    let doubts =
+        found.iter().map(|at| at.map_or(DoubtSet::default(), |at| kinds_at(&at, &landmarks))).collect();
     told("map over the gauge");
     let map = map(system, options, roll, gauge(system, pairs).unwrap_or(f64::NAN))?;
     let uncertainty = match &options.noise {
@@ -198,7 +214,55 @@ pub fn contact_geometry(
         }
     };
     findings.extend(reach(&lateral, &found));
-    Ok(ConicityReport { functions, key_figures, map, uncertainty, findings, table, roll })
+    findings.extend(missing(&found, &table));
+    findings.extend(doubted(&lateral, &found, &basis, (&landmarks, pairs)));
+    findings.extend(uncertainty.iter().flat_map(Uncertainty::findings));
+    Ok(ConicityReport { functions, doubts, key_figures, map, uncertainty, findings, table, roll })
+}
+
+/// Says at how many displacements with contact there is no conicity, by reasons.
+fn missing(found: &[Option<GeometryAt>], table: &Conicity) -> Vec<String> {
+    let mut by_reason: Vec<(NoConicity, Vec<f64>)> = Vec::new();
+    for lateral in found.iter().flatten().map(|at| at.lateral).filter(|lateral| *lateral > 0.0) {
+        let Err(why) = table.at(lateral) else { continue };
+        match by_reason.iter_mut().find(|(known, _)| *known == why) {
+            Some((_, all)) => all.push(lateral),
+            None => by_reason.push((why, vec![lateral])),
+        }
+    }
+    let said = |(why, all): &(NoConicity, Vec<f64>)| match all.as_slice() {
+        [first, .., last] => {
+            format!("no conicity at {} amplitudes, {first:.3} to {last:.3} mm: {why}", all.len())
+        }
+        all => format!("no conicity at an amplitude of {:.3} mm: {why}", all.first().unwrap_or(&f64::NAN)),
+    };
+    by_reason.iter().map(said).collect()
+}
+
+/// Says the doubts about both integrations and about contacts: at the displacements of the functions, and within the movements of the key
+/// figures and, where the sides differ, of the largest amplitude, which reach other displacements.
+fn doubted(
+    lateral: &[f64],
+    found: &[Option<GeometryAt>],
+    basis: &ConicityBasis<'_>,
+    (landmarks, pairs): (&SideLandmarks, [&Pair; 2]),
+) -> Vec<String> {
+    let radius = |side| pairs[usize::from(side == TrackSide::Right)].wheel_radius();
+    let mut tally = Tally::default();
+    for at in found.iter().flatten() {
+        let sides = [TrackSide::Left, TrackSide::Right].into_iter();
+        let doubts = sides.zip(landmarks.of_first(at.contacts.each_ref().map(Some)));
+        tally.add_sides(doubts.map(|(side, doubts)| (at.lateral, side, doubts)));
+    }
+    let amplitudes: Vec<f64> = lateral.iter().copied().filter(|lateral| *lateral > 0.0).collect();
+    let mut out = basis.doubts(&[AMPLITUDE, NONLINEARITY[1]], landmarks, radius);
+    let further = basis.integrations(&amplitudes).map(|doubt| doubt.to_string());
+    out.extend(further.filter(|said| !out.contains(said)));
+    if basis.is_asymmetric() {
+        out.extend(basis.contacts(&amplitudes, landmarks, radius));
+    }
+    out.extend(tally.line(found.len(), radius));
+    out
 }
 
 impl ConicityOptions {
@@ -232,27 +296,6 @@ impl ConicityOptions {
         let steps = steps as i64;
         Ok((-steps..=steps).map(|k| self.amplitude * k as f64 / steps as f64).collect())
     }
-}
-
-/// Integrates Δr over the displacements and beyond each end, so that the largest amplitude has its turning points; `None` without
-/// contact around 0.
-fn two_step_of(system: &WheelsetOnTrack, lateral: &[f64], step: f64, roll: Roll) -> Result<Option<TwoStep>> {
-    let [Some(first), Some(last)] = [lateral.first(), lateral.last()] else { return Ok(None) };
-    // Where the sides differ the movement is not about 0: a turning point lies further out.
-    let reach = if system.symmetric() { 1 } else { (last / (2.0 * step)).ceil() as i32 };
-    let before = (1..=reach).rev().map(|k| first - step * f64::from(k));
-    let after = (1..=reach).map(|k| last + step * f64::from(k));
-    let wider: Vec<f64> = before.chain(lateral.iter().copied()).chain(after).collect();
-    let found = geometry_over(system, &wider, roll)?;
-    // The stretch around 0 without a gap.
-    let middle = wider.len() / 2;
-    let from = (0..middle).rev().find(|&k| found[k].is_none()).map_or(0, |k| k + 1);
-    let to = (middle..wider.len()).find(|&k| found[k].is_none()).unwrap_or(wider.len());
-    if from >= to {
-        return Ok(None);
-    }
-    let delta_r: Vec<f64> = found[from..to].iter().flatten().map(|at| at.delta_r).collect();
-    TwoStep::new(&wider[from..to], &delta_r).map(Some)
 }
 
 /// Gives the columns of the functions.

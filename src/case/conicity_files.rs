@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::columns::SweepColumns;
-use super::conicity::{ConicityReport, FUNCTIONS, KEY_FIGURES};
+use super::conicity::{ConicityReport, DOUBT, FUNCTIONS, KEY_FIGURES};
 use super::conicity_noise::{UNCERTAIN, Uncertainty};
 use super::curves::curves;
 use super::doubts::DoubtSet;
@@ -20,8 +20,8 @@ use crate::search::{ONE_CONTACT, ParallelSweep, Position, Roll, Selection, Wheel
 
 /// Writes the functions over the displacement as CSV: a row a displacement, empty cells where there is no value.
 pub fn conicity_csv(report: &ConicityReport) -> String {
-    let mut text = FUNCTIONS.map(|(name, _)| name).join(",") + "\n";
-    for row in 0..report.functions[0].len() {
+    let mut text = format!("{},{}\n", FUNCTIONS.map(|(name, _)| name).join(","), DOUBT.0);
+    for (row, doubts) in report.doubts.iter().enumerate() {
         for (k, column) in report.functions.iter().enumerate() {
             let comma = if k == 0 { "" } else { "," };
             // Writing to a String cannot fail.
@@ -30,7 +30,7 @@ pub fn conicity_csv(report: &ConicityReport) -> String {
                 value => write!(text, "{comma}{value}"),
             };
         }
-        text.push('\n');
+        let _ = writeln!(text, ",{doubts}");
     }
     text
 }
@@ -38,18 +38,24 @@ pub fn conicity_csv(report: &ConicityReport) -> String {
 /// Gives key figures, functions, map, uncertainty and findings as one JSON object, with the definitions of all columns; null where there
 /// is no value.
 pub fn conicity_values(report: &ConicityReport) -> Value {
-    let definitions: Map<String, Value> =
-        KEY_FIGURES.iter().chain(&FUNCTIONS).map(|&(name, text)| (name.into(), text.into())).collect();
+    let definitions: Map<String, Value> = KEY_FIGURES
+        .iter()
+        .chain(&FUNCTIONS)
+        .chain([&DOUBT])
+        .map(|&(name, text)| (name.into(), text.into()))
+        .collect();
     let figures: Map<String, Value> = KEY_FIGURES
         .iter()
         .zip(report.key_figures)
         .map(|(&(name, _), value)| (name.into(), value.into()))
         .collect();
-    let functions: Map<String, Value> = FUNCTIONS
+    let mut functions: Map<String, Value> = FUNCTIONS
         .iter()
         .zip(&report.functions)
         .map(|(&(name, _), values)| (name.into(), values.clone().into()))
         .collect();
+    let doubts: Vec<String> = report.doubts.iter().map(ToString::to_string).collect();
+    functions.insert(DOUBT.0.into(), doubts.into());
     json!({
         "program": "wheelrail",
         "version": env!("CARGO_PKG_VERSION"),
@@ -63,14 +69,17 @@ pub fn conicity_values(report: &ConicityReport) -> Value {
     })
 }
 
-/// Gives the uncertainty as a JSON object: the noise, the number of failed samples, and the spread of each quantity.
+/// Gives the uncertainty as a JSON object: the noise, the number of failed samples, and the spread of each quantity with the number of
+/// samples that have it not.
 pub fn uncertainty_values(uncertainty: &Uncertainty) -> Value {
     let spreads: Map<String, Value> = UNCERTAIN
         .iter()
         .zip(&uncertainty.spreads)
         .map(|(&name, spread)| (name.into(), json!(spread)))
         .collect();
-    json!({ "noise": uncertainty.noise, "failed": uncertainty.failed, "spreads": spreads })
+    let lost: Map<String, Value> =
+        UNCERTAIN.iter().zip(uncertainty.lost).map(|(&name, lost)| (name.into(), lost.into())).collect();
+    json!({ "noise": uncertainty.noise, "failed": uncertainty.failed, "spreads": spreads, "lost": lost })
 }
 
 /// Writes key figures, their spread and the findings as a text for people.

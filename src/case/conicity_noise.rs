@@ -1,5 +1,7 @@
 //! How far noise of the measurement moves the contact geometry of a wheelset: seeded samples of the whole computation.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use serde::Serialize;
 
 use crate::error::{Error, Result, finite};
@@ -12,6 +14,10 @@ use crate::search::{
 
 /// Amplitude up to which the samples' conicity is tabulated \[mm\]: that of the nonlinearity parameter.
 const REACH: f64 = 4.0;
+
+/// Largest share of the samples without a quantity with which its spread is given: as many as lie outside of the interval. The samples that
+/// are left are no fair choice of all.
+const MOST_LOST: f64 = 0.05;
 
 /// Quantities whose spread under noise is found. Key figures have their names; places of contact are those at a displacement of 0.
 pub const UNCERTAIN: [&str; 7] = [
@@ -54,8 +60,24 @@ pub struct Uncertainty {
     pub noise: Noise,
     /// Number of samples of which nothing could be computed.
     pub failed: usize,
-    /// The spread of each of [`UNCERTAIN`]; `None` of a quantity that fewer than 40 samples have.
+    /// Number of samples without each of [`UNCERTAIN`], the failed ones included.
+    pub lost: [usize; UNCERTAIN.len()],
+    /// The spread of each of [`UNCERTAIN`]; `None` of a quantity that fewer than 40 samples have, or 5 % of them have not.
     pub spreads: [Option<Spread>; UNCERTAIN.len()],
+}
+
+impl Uncertainty {
+    /// Says which quantities some samples have not.
+    pub(super) fn findings(&self) -> impl Iterator<Item = String> {
+        let quantities = UNCERTAIN.into_iter().zip(self.lost).zip(&self.spreads);
+        quantities.filter(|((_, lost), _)| *lost > 0).map(|((name, lost), spread)| {
+            let told = match spread {
+                Some(_) => "its spread is that of the others",
+                None => "no spread is given, since the others are no fair choice",
+            };
+            format!("{lost} of {} samples of the noise have no {name}: {told}", self.noise.samples)
+        })
+    }
 }
 
 impl Noise {
@@ -134,13 +156,25 @@ pub(super) fn uncertainty(
 ) -> Result<Uncertainty> {
     let side = |side, pair| NoisySide::new(side, pair, noise.step).map_err(|error| error.within("noise"));
     let sides = [side(system.left(), pairs[0])?, side(system.right(), pairs[1])?];
+    let having = [const { AtomicUsize::new(0) }; UNCERTAIN.len()];
     let Sampled { failed, spreads } = sampled(noise.samples, noise.seed, |deviates| {
         let widened = noise.gauge * deviates.draw();
         let left = sides[0].sample(noise, widened, deviates)?;
         let right = sides[1].sample(noise, widened, deviates)?;
-        quantities(&WheelsetOnTrack::of_sides(left, right), roll)
+        let found = quantities(&WheelsetOnTrack::of_sides(left, right), roll)?;
+        for (count, _) in having.iter().zip(found).filter(|(_, value)| value.is_finite()) {
+            count.fetch_add(1, Ordering::Relaxed);
+        }
+        Ok(found)
     })?;
-    Ok(Uncertainty { noise: *noise, failed, spreads })
+    let lost = having.map(|count| noise.samples - count.into_inner());
+    let mut spreads = spreads;
+    for (spread, _) in
+        spreads.iter_mut().zip(lost).filter(|(_, lost)| *lost as f64 > MOST_LOST * noise.samples as f64)
+    {
+        *spread = None;
+    }
+    Ok(Uncertainty { noise: *noise, failed, lost, spreads })
 }
 
 /// Gives the quantities of [`UNCERTAIN`]; NaN where there is none.

@@ -46,11 +46,13 @@ pub enum DoubtKind {
     Kink,
     /// The wheelset is faster than any train.
     Speed,
+    /// Two integrations of an equivalent conicity differ by more than their errors.
+    Integrations,
 }
 
 impl DoubtKind {
     /// All kinds.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::FlangeTip,
         Self::FlangeBack,
         Self::Lifted,
@@ -70,6 +72,7 @@ impl DoubtKind {
         Self::FlangeSide,
         Self::Kink,
         Self::Speed,
+        Self::Integrations,
     ];
 
     /// The kinds about a place of contact: those that a sweep names at each position.
@@ -98,6 +101,7 @@ impl DoubtKind {
             Self::FlangeSide => "flange-side",
             Self::Kink => "kink",
             Self::Speed => "speed",
+            Self::Integrations => "integrations",
         }
     }
 
@@ -149,6 +153,10 @@ impl DoubtKind {
             }
             Self::Kink => "check their ends, unless the corner is meant",
             Self::Speed => "speeds are in m/s, not in km/h",
+            Self::Integrations => {
+                "trust neither: look at the rolling radius difference beside the turning points and for jumps of it, and take \
+                 smaller steps"
+            }
         }
     }
 }
@@ -181,6 +189,12 @@ impl DoubtSet {
     /// Lists every set by ascending code.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..1 << DoubtKind::OF_CONTACT.len()).map(Self)
+    }
+
+    /// Joins two sets.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     /// Gives the number of the set, below 2⁵.

@@ -6,6 +6,7 @@ mod analysis;
 mod columns;
 mod conformal;
 mod conicity;
+mod conicity_doubts;
 mod conicity_files;
 mod conicity_noise;
 mod contact;
@@ -49,8 +50,9 @@ pub use analysis::{Analysis, Timings, check_method};
 pub use columns::{COLUMNS, ColumnArray, SweepColumn, SweepColumns};
 pub use conformal::Conformal;
 pub use conicity::{
-    ConicityMap, ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, conicity, contact_geometry,
+    ConicityMap, ConicityOptions, ConicityReport, DOUBT, FUNCTIONS, KEY_FIGURES, conicity, contact_geometry,
 };
+pub use conicity_doubts::{ConicityBasis, doubts_of_conicities};
 pub use conicity_files::{
     conicity_csv, conicity_page, conicity_picture, conicity_text, conicity_values, uncertainty_values,
 };

@@ -33,12 +33,17 @@ impl Kind {
 impl Tally {
     /// Adds the doubts of one position.
     pub fn add<'a>(&mut self, rows: impl Iterator<Item = (&'a SweepRow, ContactDoubts)>) {
+        self.add_sides(rows.map(|(row, doubts)| (row.lateral, row.side, doubts)));
+    }
+
+    /// Adds the doubts of one position: its lateral displacement \[mm\] and the doubts of each side.
+    pub fn add_sides(&mut self, sides: impl Iterator<Item = (f64, TrackSide, ContactDoubts)>) {
         let mut here = [Kind::default(); DoubtKind::OF_CONTACT.len()];
-        for (row, doubts) in rows {
+        for (lateral, side, doubts) in sides {
             for (kind, value) in doubts.list() {
                 let known = DoubtKind::OF_CONTACT.iter().zip(&mut here).find(|(known, _)| **known == kind);
                 if let Some((_, own)) = known {
-                    own.add(Kind { positions: 0, worst: Some((value, row.lateral, row.side)) });
+                    own.add(Kind { positions: 0, worst: Some((value, lateral, side)) });
                     own.positions = 1;
                 }
             }
@@ -56,6 +61,11 @@ impl Tally {
     /// Says the doubts in one line, each with its largest number and its likely cause; `None` without doubts. `all` is the
     /// number of positions, `radius` the nominal radius of a side \[mm\].
     pub fn line(&self, all: usize, radius: impl Fn(TrackSide) -> f64) -> Option<String> {
+        self.said(all, ", in the column doubt", radius)
+    }
+
+    /// Says the doubts as [`Tally::line`] does, of positions that `of` describes.
+    pub(super) fn said(&self, all: usize, of: &str, radius: impl Fn(TrackSide) -> f64) -> Option<String> {
         let kinds = DoubtKind::OF_CONTACT.into_iter().zip(&self.kinds);
         let said: String = kinds
             .filter_map(|(kind, found)| {
@@ -66,7 +76,6 @@ impl Tally {
             })
             .collect();
         let positions = if all == 1 { "position" } else { "positions" };
-        (self.positions > 0)
-            .then(|| format!("doubts at {} of {all} {positions}, in the column doubt{said}", self.positions))
+        (self.positions > 0).then(|| format!("doubts at {} of {all} {positions}{of}{said}", self.positions))
     }
 }

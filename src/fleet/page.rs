@@ -39,7 +39,7 @@ pub(super) fn write(
     let mut table = NewFile::create(&folder.file("fleet.csv"))?;
     let mut tally = FleetTally::default();
     let names = numbers();
-    let head = NAMES.into_iter().chain(names.iter().map(String::as_str)).chain(["finding"]);
+    let head = NAMES.into_iter().chain(names.iter().map(String::as_str)).chain(["finding", "doubt"]);
     table.put(&csv(std::iter::once(head.map(String::from).collect()))?)?;
     for (number, pairs) in split.iter().enumerate() {
         let part = FleetPart::read(&parts.file(&part::name(number)))?;
@@ -69,7 +69,7 @@ fn csv(rows: impl Iterator<Item = Vec<String>>) -> Result<Vec<u8>> {
 fn cells(row: &FleetRow) -> Vec<String> {
     let number = |value: &Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let numbers = row.radii.iter().chain(&row.values).map(number);
-    row.names.iter().cloned().chain(numbers).chain([row.finding.clone()]).collect()
+    row.names.iter().cloned().chain(numbers).chain([row.finding.clone(), row.doubt.clone()]).collect()
 }
 
 fn summary(fleet: &Listed, title: &str, tally: &FleetTally) -> serde_json::Value {

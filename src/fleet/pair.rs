@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::list::Source;
 use super::listed::{Listed, PairNumber};
 use super::profiles::{Key, Shelf, data, keys};
-use crate::case::{Arrangement, Case, Profiles, SideProfiles};
+use crate::case::{Arrangement, Case, ConicityBasis, Profiles, SideProfiles};
 use crate::error::{Error, Result};
 use crate::measure::{Measures, Quantity};
 use crate::numerics::bodies::Bodies;
@@ -46,6 +46,8 @@ pub(super) struct FleetRow {
     pub values: Vec<Option<f64>>,
     /// What cannot be computed and why, and what is doubtful; empty without either.
     pub finding: String,
+    /// The words of the doubts about contacts between the turning points of the conicity at the largest amplitude.
+    pub doubt: String,
     #[serde(skip)]
     /// Where its wheels touch: the number of the displacement towards the own rail, and of the cell on the rail.
     pub touched: Vec<[i32; 2]>,
@@ -88,6 +90,7 @@ pub(super) fn row(fleet: &Listed, shelf: &Shelf, number: PairNumber) -> FleetRow
         radii: [0, 1].map(|k| radius(fleet, shelf, number, k)),
         values: values.map(|value| value.filter(|value| value.is_finite())).collect(),
         finding: own.join("; "),
+        doubt: found.doubt,
         touched: found.touched,
     }
 }
@@ -144,6 +147,7 @@ struct FoundContact {
     /// Conicities and bands.
     values: Vec<Option<f64>>,
     findings: Vec<String>,
+    doubt: String,
     touched: Vec<[i32; 2]>,
 }
 
@@ -152,6 +156,7 @@ impl Default for FoundContact {
         Self {
             values: vec![None; numbers().len() - 2 * MEASURES.len()],
             findings: Vec::new(),
+            doubt: String::new(),
             touched: Vec::new(),
         }
     }
@@ -167,6 +172,11 @@ impl FoundContact {
         for (amplitude, found) in found {
             findings.extend(found.err().map(|why| format!("no conicity at {amplitude} mm: {why}")));
         }
+        let basis = ConicityBasis::new(system, &conicity, template.roll)?;
+        let radius = |side| case.profiles().on(Some(side)).pair.wheel_radius();
+        findings.extend(basis.doubts(&found.map(|(amplitude, _)| amplitude), case.landmarks(), radius));
+        let largest = if found[2].1.is_ok() { most } else { AMPLITUDE };
+        let doubt = basis.kinds(largest, case.landmarks()).to_string();
         let [usual, low, high] = found.map(|(_, found)| found.ok());
         let value = |found: Option<Equivalent>| found.map(|found| found.conicity);
         let bands = Bands::of(system, &template)?;
@@ -179,7 +189,7 @@ impl FoundContact {
         ];
         let ends = bands.reach.into_iter().flatten().flat_map(Interval::ends);
         values.extend(ends.map(|x| Some(x).filter(|x| x.is_finite())));
-        Ok(Self { values, findings, touched: bands.touched })
+        Ok(Self { values, findings, doubt, touched: bands.touched })
     }
 }
 

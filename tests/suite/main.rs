@@ -62,6 +62,7 @@ mod tables;
 mod triangles;
 mod turned_wheels;
 mod two_sides;
+mod unequal_wheels;
 mod varying_normals;
 mod vtk_files;
 mod wrong_scenes;

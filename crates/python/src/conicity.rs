@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::{Deserialize, Serialize};
 use wheelrail::case::{
-    ConicityOptions, ConicityReport, FUNCTIONS, KEY_FIGURES, Noise, conicity as of_case, contact_geometry,
+    ConicityOptions, ConicityReport, DOUBT, FUNCTIONS, KEY_FIGURES, Noise, conicity as of_case,
+    contact_geometry,
 };
 
 use crate::arrays::values;
@@ -34,7 +35,7 @@ impl Default for Deviations {
 }
 
 /// Find the contact geometry of a wheelset on its track by EN 15302: a dict of "key_figures" (None where there is none), "functions" over
-/// the lateral displacement (arrays), the "map" of equivalent conicity over gauge and amplitude, "uncertainty", "findings" and
+/// the lateral displacement (arrays, and a list of words for "doubt"), the "map" of equivalent conicity over gauge and amplitude, "uncertainty", "findings" and
 /// "definitions" of every name.
 ///
 /// `wheelset` is a `Wheelset`, or a `Case` with its own roll. `amplitude` is the largest displacement and amplitude, `step` that of the
@@ -91,12 +92,14 @@ fn dict_of(py: Python<'_>, report: ConicityReport) -> PyResult<Bound<'_, PyDict>
     for ((name, _), value) in KEY_FIGURES.iter().zip(report.key_figures) {
         figures.set_item(*name, (!value.is_nan()).then_some(value))?;
     }
-    for (name, meaning) in KEY_FIGURES.iter().chain(&FUNCTIONS) {
+    for (name, meaning) in KEY_FIGURES.iter().chain(&FUNCTIONS).chain([&DOUBT]) {
         definitions.set_item(*name, *meaning)?;
     }
     for ((name, _), values) in FUNCTIONS.iter().zip(report.functions) {
         functions.set_item(*name, PyArray1::from_vec(py, values))?;
     }
+    let doubts: Vec<String> = report.doubts.iter().map(ToString::to_string).collect();
+    functions.set_item(DOUBT.0, doubts)?;
     map.set_item("gauge_change_mm", PyArray1::from_vec(py, report.map.gauge_change_mm))?;
     map.set_item("gauge_mm", PyArray1::from_vec(py, report.map.gauge_mm))?;
     map.set_item("amplitude_mm", PyArray1::from_vec(py, report.map.amplitude_mm))?;

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{
     ApproachBy, COLUMNS, ColumnArray, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, SweepColumns,
-    Tally, curves,
+    Tally, curves, doubts_of_conicities,
 };
 use wheelrail::search::{
     ONE_CONTACT, ParallelSweep, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over,
@@ -36,13 +36,18 @@ pub(crate) fn sweep<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let AskedOfSweep { within, conicity, ellipses } = asked;
     let count = positions.count;
-    let (columns, tally) = watched(py, progress.map(|shown| (shown, "positions")), |watch| {
+    let radius = |side| radii[usize::from(side == TrackSide::Right)];
+    let (columns, tally, doubts) = watched(py, progress.map(|shown| (shown, "positions")), |watch| {
         watch.at(0, positions.count);
         let positions = listed(&positions, watch)?;
         let conicity = if conicity { conicity_over(system, &positions, &mut |_, _| {})? } else { None };
         let selection = Selection { within, apart: ONE_CONTACT };
         let sweep = ParallelSweep { system, selection, conicity: conicity.as_ref(), positions: &positions };
-        let mut all = (SweepColumns::default(), Tally::default());
+        let doubts = match &conicity {
+            Some(table) => doubts_of_conicities(system, table, &positions, landmarks, radius)?,
+            None => Vec::new(),
+        };
+        let mut all = (SweepColumns::default(), Tally::default(), doubts);
         all.0.reserve(2 * positions.len());
         sweep.blocks(
             |(columns, tally): &mut (SweepColumns, Tally), number, rows| {
@@ -62,7 +67,9 @@ pub(crate) fn sweep<'py>(
         )?;
         Ok(all)
     })?;
-    let radius = |side| radii[usize::from(side == TrackSide::Right)];
+    for doubt in &doubts {
+        say(py, "conicity", doubt, "see `wheelrail.conicity`")?;
+    }
     if let Some(line) = tally.line(count, radius) {
         say(py, "contacts", &line, "the column `doubt` says where")?;
     }

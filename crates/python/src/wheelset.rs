@@ -4,18 +4,17 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use wheelrail::case::{ContactDoubts, Doubt, SideLandmarks, usual};
+use wheelrail::case::{ConicityBasis, ContactDoubts, Doubt, SideLandmarks, usual};
 use wheelrail::measured::GAUGE_HEIGHT;
 use wheelrail::placement::{self, Track};
 use wheelrail::scene;
 use wheelrail::search::{
-    self, Conicity, NoConicity, ONE_CONTACT, Position, Roll, Selection, SideOnTrack, TrackSide,
-    WheelsetOnTrack,
+    self, Conicity, ONE_CONTACT, Position, Roll, Selection, SideOnTrack, TrackSide, WheelsetOnTrack,
 };
 use wheelrail::{Error, ErrorKind, RailDistance, WheelDistance};
 
 use crate::asked::{asked, checked_modulus};
-use crate::errors::{OrRaise, exception, warn};
+use crate::errors::{OrRaise, exception, say, warn};
 use crate::long::detached;
 use crate::pair::Pair;
 use crate::positions::{RollArgument, positions};
@@ -172,21 +171,35 @@ impl Wheelset {
     ///
     /// `roll` is "solve" or "neglect", the convention of EN 15302.
     ///
-    /// Raises InputError for an amplitude that is not positive; GeometryError where the wheelset leaves its track, or the
-    /// movement does not come back.
+    /// Raises InputError for an amplitude that is not positive; GeometryError where the wheelset leaves its track before the movement
+    /// turns, or the movement does not come back. Warns where two integrations differ by more than their errors, and of contacts on the
+    /// way that no wheel stands at.
     #[pyo3(signature = (amplitude, *, roll = RollArgument::Word("solve".into())))]
     fn conicity(&self, py: Python<'_>, amplitude: f64, roll: RollArgument) -> PyResult<f64> {
         let roll = roll.roll()?;
-        let table = detached(py, || Conicity::new(&self.system, amplitude, roll))?.or_raise()?;
-        let found = table.at(amplitude).map_err(|why| {
-            let found = match why {
-                NoConicity::OffTrack => "a wheelset off its track",
-                _ => "a movement that does not come back",
+        let radii = [self.left_pair(), &self.pair].map(|pair| pair.pair.wheel_radius());
+        let radius = |side| radii[usize::from(side == TrackSide::Right)];
+        let computed = || -> wheelrail::Result<_> {
+            let table = Conicity::new(&self.system, amplitude, roll)?;
+            let found = table.at(amplitude);
+            let doubts = match found {
+                Ok(_) => {
+                    let basis = ConicityBasis::new(&self.system, &table, roll)?;
+                    basis.doubts(&[amplitude], &self.landmarks, radius)
+                }
+                Err(_) => Vec::new(),
             };
+            Ok((found, doubts))
+        };
+        let (found, doubts) = detached(py, computed)?.or_raise()?;
+        let found = found.map_err(|why| {
             let expected = "a rolling radius that grows towards the flange";
-            let error = Error::new("amplitude", found, expected, "take a smaller amplitude");
+            let error = Error::new("amplitude", why.to_string(), expected, "take a smaller amplitude");
             exception(error.of_kind(ErrorKind::Geometry))
         })?;
+        for doubt in &doubts {
+            say(py, "conicity", doubt, "see `wheelrail.conicity`")?;
+        }
         Ok(found.conicity)
     }
 

@@ -25,6 +25,23 @@ def test_noise_has_an_interval(track: wr.Wheelset) -> None:
     assert spread["samples"] == 50 and spread["low"] < spread["mean"] < spread["high"]
 
 
+def test_wheels_that_differ_swing_far_from_the_middle() -> None:
+    rail, wheel = wr.rail("60E1").rotated("1:20"), wr.wheel("S1002")
+    left = wr.Pair(rail, wheel, radius=459.8)
+    unequal = wr.Wheelset(wr.Pair(rail, wheel, radius=460.0), left=left, gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
+    assert unequal.conicity(8.0, roll="neglect") == pytest.approx(0.65005, rel=2e-4)
+    alone = unequal.sweep([-3.0, 3.0], roll="neglect")["conicity"]
+    assert alone == pytest.approx(unequal.conicity(3.0, roll="neglect"), rel=2e-4)
+
+
+def test_flange_tips_are_doubted(pair: wr.Pair) -> None:
+    on_tips = wr.Wheelset(pair, gauge=1315.0, back_to_back=1360.0, flange_back_x=-70.0)
+    report = wr.conicity(on_tips, roll="neglect", gauges=[0.0])
+    swept = on_tips.sweep(report["functions"]["lateral_mm"], roll="neglect", conicity=False)
+    assert "flange-tip" in " ".join(report["functions"]["doubt"]) and swept["doubt"].any()
+    assert any("in the column doubt; flange-tip at" in finding for finding in report["findings"])
+
+
 def test_wrong_options_are_refused(track: wr.Wheelset) -> None:
     with pytest.raises(wr.InputError, match="noise"):
         wr.conicity(track, noise={"points": 0.0})

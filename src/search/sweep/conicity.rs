@@ -12,7 +12,7 @@
 //! which does not depend on e and r₀. The yaw is neglected. Where both sides are alike Δr is odd, and a quarter of the movement is
 //! enough. Where they are not, the wheelset swings about the displacement y₀ at which Δr = 0, between turning points
 //! of equal energy, and ŷ is half their distance, the convention of EN 15302. T is then the mean of the two
-//! quarters on either side of y₀.
+//! quarters on either side of y₀. One turning point may be up to 2 ŷ from y₀, and y₀ itself farther from 0 than ŷ.
 //!
 //! # Effect of errors of Δr
 //!
@@ -32,13 +32,12 @@ mod tests;
 
 use std::fmt;
 
-use branches::Searched;
-use movement::{Movement, Quarter};
-use refine::{LEAST_AMPLITUDE, RefinedTable, most_searches};
+use branches::{Searched, SideBranches};
+use movement::{Movement, Quarter, turning};
+use refine::{LEAST_AMPLITUDE, RefinedTable, WIDEST, most_searches};
 
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;
-use crate::numerics::roots::last_where;
 use crate::search::position::Roll;
 use crate::search::wheelset::WheelsetOnTrack;
 
@@ -50,9 +49,8 @@ pub const ACCURACY: f64 = 1e-4;
 /// all searches of the others.
 const ROUNDS: u32 = 7;
 
-/// Reach of the tables to each side, as a share of the largest amplitude, where Δr is not odd: one turning point is
-/// farther from the centre than the other.
-const ASYMMETRY: f64 = 1.5;
+/// Share of the largest amplitude by which a table grows at a time until the movement turns within it, where Δr is not odd.
+const GROWTH: f64 = 1.0 / 8.0;
 
 /// Points in √(y − y_k) of a cell at which T is tabulated: Chebyshev's on \[0, 1\].
 const POINTS: [f64; 5] = [
@@ -81,7 +79,7 @@ pub struct Conicity {
 }
 
 /// The movement from the centre to one side.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 struct Swing {
     movement: Movement,
     /// For each cell T as a polynomial; `None` where T is no smooth curve.
@@ -106,9 +104,11 @@ pub enum NoConicity {
     GivenRoll,
     /// The displacement is 0, which is no amplitude.
     NoAmplitude,
-    /// The amplitude is beyond the table, which ends at the amplitude it was made for, or where the wheelset
+    /// A turning point is beyond the table, which ends at those of the amplitude it was made for, or where the wheelset
     /// leaves its track.
     OffTrack,
+    /// Δr grows through 0 at no displacement: there is none about which the wheelset swings.
+    NoCentre,
     /// The movement does not come back through 0: Δr does not restore there, or turns the movement back on
     /// the way.
     NotRestoring,
@@ -120,7 +120,8 @@ impl fmt::Display for NoConicity {
             Self::NotAsked => "it was not asked for",
             Self::GivenRoll => "the roll is given: the wheelset is held",
             Self::NoAmplitude => "the amplitude is 0",
-            Self::OffTrack => "a wheel leaves its rail within the amplitude",
+            Self::OffTrack => "a wheel leaves its rail before the movement turns",
+            Self::NoCentre => "the wheels have equal rolling radii nowhere on the track",
             Self::NotRestoring => "the movement does not come back through the centre",
         })
     }
@@ -155,7 +156,7 @@ impl Conicity {
     /// Accuracy: 1e-4 of the conicity at amplitudes from 0.1 mm on; [`Equivalent::error`] says what was
     /// reached.
     /// Cost: at most [`Conicity::most_searches`], of which a drawn pair takes a fifth, and three times as many where the sides
-    /// differ; with [`Roll::Solve`] every search solves the roll.
+    /// differ, besides two for every 0.1 mm from 0 to the centre; with [`Roll::Solve`] every search solves the roll.
     ///
     /// # Errors
     /// An amplitude that is not a positive number; a given roll, by which the wheelset is held.
@@ -184,32 +185,46 @@ impl Conicity {
         }
         let mut searched = Searched::new(system, roll);
         if system.symmetric() {
-            let table = RefinedTable::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
-            return Self::refined(table, progress);
+            let mut table = RefinedTable::new(|y, sides| searched.at(y, sides), amplitude, ACCURACY)?;
+            let right = Swing::refined(&mut table, progress)?;
+            let [searches, _] = table.searches();
+            return Ok(Self { centre: Some(0.0), right, left: None, searches });
         }
-        Self::about_centre(&mut searched, amplitude, progress)
+        match searched.centre()? {
+            Some(y_0) => Self::about(system, roll, y_0, amplitude, progress),
+            None => Ok(Self { centre: None, right: Swing::default(), left: None, searches: 0 }),
+        }
     }
 
-    /// Tabulates a Δr that is not odd to both sides of the displacement at which it vanishes.
-    fn about_centre(
-        searched: &mut Searched<'_>,
+    /// Tabulates a Δr that is not odd to both sides of the displacement at which it vanishes \[mm\].
+    fn about(
+        system: &WheelsetOnTrack,
+        roll: Roll,
+        centre: f64,
         amplitude: f64,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Self> {
-        let centre = searched.centre(amplitude)?;
-        let y_0 = centre.unwrap_or(0.0);
-        let reach = ASYMMETRY * amplitude;
-        let table = RefinedTable::new(|u, sides| searched.at(y_0 + u, sides), reach, ACCURACY)?;
-        let Self { right, searches, .. } = Self::refined(table, progress)?;
-        let mirrored = |u: f64, sides: &mut branches::SideBranches| searched.mirrored(y_0 - u, sides);
-        let left = Self::refined(RefinedTable::new(mirrored, reach, ACCURACY)?, &mut |done, most| {
-            progress(searches + done, searches + most);
-        })?;
-        Ok(Self { centre, right, left: Some(left.right), searches: searches + left.searches })
+        let table = |sign: f64| {
+            let mut searched = Searched::new(system, roll);
+            let beside = move |u: f64, sides: &mut SideBranches| searched.beside(centre, sign, u, sides);
+            RefinedTable::at_centre(beside, ACCURACY)
+        };
+        let [mut left, mut right] = [table(-1.0)?, table(1.0)?];
+        let most = Self::most_searches(amplitude + 2.0 * WIDEST).saturating_mul(3);
+        let mut done = 0;
+        let mut told = |searches: usize| {
+            done += searches;
+            progress(done, most);
+        };
+        reach_turning_points([&mut left, &mut right], amplitude, &mut told)?;
+        let mut swing = |table| Swing::refined(table, &mut |_, _| told(1));
+        let [to_left, to_right] = [swing(&mut left)?, swing(&mut right)?];
+        let searches = left.searches()[0] + right.searches()[0];
+        Ok(Self { centre: Some(centre), right: to_right, left: Some(to_left), searches })
     }
 
-    /// Returns the displacement about which the wheelset swings \[mm\], 0 where both sides are alike; `None` if Δr vanishes at
-    /// none within the largest amplitude.
+    /// Returns the displacement about which the wheelset swings \[mm\], 0 where both sides are alike: that nearest to 0 at which Δr grows
+    /// through 0; `None` if there is none on the track.
     pub fn centre(&self) -> Option<f64> {
         self.centre
     }
@@ -234,37 +249,77 @@ impl Conicity {
     /// # Errors
     /// An amplitude of 0 or beyond the table; a movement that does not come back.
     pub fn at(&self, y: f64) -> std::result::Result<Equivalent, NoConicity> {
-        let amplitude = y.abs();
-        if amplitude == 0.0 {
-            return Err(NoConicity::NoAmplitude);
-        }
-        if self.centre.is_none() {
-            return Err(NoConicity::NotRestoring);
-        }
-        let Some(left) = &self.left else { return self.right.quarter(amplitude).map(Equivalent::of) };
-        // Turning points of equal energy, 2 ŷ apart.
-        let too_far = |to_right: f64| {
-            let energies = [
-                self.right.movement.energy_at(to_right),
-                left.movement.energy_at(2.0 * amplitude - to_right),
-            ];
-            match energies {
-                [Some(right), Some(left)] => right > left,
-                [None, _] => true,
-                [_, None] => false,
-            }
-        };
-        let to_right = last_where(|to_right| !too_far(to_right), 0.0, 2.0 * amplitude);
-        let [right, left] = [self.right.quarter(to_right)?, left.quarter(2.0 * amplitude - to_right)?];
+        let [to_left, to_right] = self.turns(y)?;
+        let Some(left) = &self.left else { return self.right.quarter(to_right).map(Equivalent::of) };
+        let [right, left] = [self.right.quarter(to_right)?, left.quarter(to_left)?];
         let time = (right.time + left.time) / 2.0;
         let error = (right.time * right.error).hypot(left.time * left.error) / (2.0 * time);
         Ok(Equivalent::of(Quarter { time, error }))
     }
 
-    /// Refines the table round by round until all conicities are accurate, or its searches are used up.
-    fn refined<F>(mut table: RefinedTable<F>, progress: &mut dyn FnMut(usize, usize)) -> Result<Self>
+    /// Returns the displacements between which the wheelset swings with the amplitude |y| \[mm\], 2 |y| apart.
+    ///
+    /// # Errors
+    /// Those of [`Conicity::at`], except that the movement may turn back between them.
+    pub fn turning_points(&self, y: f64) -> std::result::Result<Interval, NoConicity> {
+        let [to_left, to_right] = self.turns(y)?;
+        let centre = self.centre.unwrap_or(0.0);
+        Ok(Interval::new(centre - to_left, centre + to_right))
+    }
+
+    /// Returns the largest amplitude that has room between the ends of the table \[mm\].
+    pub fn largest_amplitude(&self) -> f64 {
+        let right = self.right.movement.reach();
+        self.left.as_ref().map_or(right, |left| f64::midpoint(left.movement.reach(), right))
+    }
+
+    /// Returns the distances of the turning points from the centre, to the left and to the right \[mm\].
+    fn turns(&self, y: f64) -> std::result::Result<[f64; 2], NoConicity> {
+        let amplitude = y.abs();
+        match (&self.centre, &self.left) {
+            _ if amplitude.is_nan() || amplitude == 0.0 => Err(NoConicity::NoAmplitude),
+            (None, _) => Err(NoConicity::NoCentre),
+            (_, None) => Ok([amplitude; 2]),
+            (_, Some(left)) => {
+                turning([&left.movement, &self.right.movement], amplitude).ok_or(NoConicity::OffTrack)
+            }
+        }
+    }
+}
+
+/// Extends the tables to the left and to the right of the centre until a movement with this amplitude \[mm\] turns within them, or the
+/// wheelset leaves its track on a side on which it would turn; tells `told` the searches of every step.
+fn reach_turning_points<F>(
+    tables: [&mut RefinedTable<F>; 2],
+    amplitude: f64,
+    told: &mut dyn FnMut(usize),
+) -> Result<()>
+where
+    F: FnMut(f64, &mut SideBranches) -> Result<bool>,
+{
+    let mut movements = tables.each_ref().map(|table| Movement::new(table.knots()));
+    // What refines the tables further may move the turning points a little.
+    while turning(movements.each_ref(), amplitude + WIDEST).is_none() {
+        let [left, right] = movements.each_ref().map(|movement| movement.highest_at(f64::INFINITY));
+        let short = usize::from(right < left);
+        let table = &mut *tables[short];
+        let [before, _] = table.searches();
+        let on_track = table.lengthen(GROWTH * amplitude)?;
+        table.refine(ACCURACY, &mut |_, _| {})?;
+        told(table.searches()[0] - before);
+        if !on_track {
+            break;
+        }
+        movements[short] = Movement::new(table.knots());
+    }
+    Ok(())
+}
+
+impl Swing {
+    /// Refines a table round by round until all conicities are accurate, or its searches are used up.
+    fn refined<F>(table: &mut RefinedTable<F>, progress: &mut dyn FnMut(usize, usize)) -> Result<Self>
     where
-        F: FnMut(f64, &mut branches::SideBranches) -> Result<bool>,
+        F: FnMut(f64, &mut SideBranches) -> Result<bool>,
     {
         let mut influence = ACCURACY;
         let mut rounds = 1..ROUNDS;
@@ -278,14 +333,12 @@ impl Conicity {
             let converged =
                 fits.iter().enumerate().all(|(cell, fit)| !served(cell) || fit.as_ref().is_none_or(fine));
             if converged || searches >= most || rounds.next().is_none() {
-                return Ok(Self { centre: Some(0.0), right: Swing { movement, fits }, left: None, searches });
+                return Ok(Self { movement, fits });
             }
             influence /= 2.0;
         }
     }
-}
 
-impl Swing {
     /// Returns the time of a quarter of the movement with this amplitude \[mm\].
     fn quarter(&self, amplitude: f64) -> std::result::Result<Quarter, NoConicity> {
         let cell = self.movement.cell(amplitude).ok_or(NoConicity::OffTrack)?;

@@ -35,10 +35,17 @@ fn inaccurate(found: &[ConicityFound]) -> Option<String> {
     })
 }
 
-fn missing(found: &[ConicityFound]) -> Option<String> {
-    let stuck = found.iter().filter(|found| **found == Err(NoConicity::NotRestoring)).count();
-    let positions = counted(stuck, "position");
-    (stuck > 0).then(|| format!("no conicity at {positions}, from which the movement does not come back"))
+fn missing(found: &[ConicityFound]) -> Vec<String> {
+    let reasons = [
+        (NoConicity::NotRestoring, "from which the movement does not come back"),
+        (NoConicity::OffTrack, "from which a wheel leaves its rail before the movement turns"),
+        (NoConicity::NoCentre, "since the wheels have equal rolling radii nowhere on the track"),
+    ];
+    let counted = reasons.map(|(why, said)| {
+        let count = found.iter().filter(|found| **found == Err(why)).count();
+        (count > 0).then(|| format!("no conicity at {}, {said}", counted(count, "position")))
+    });
+    counted.into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -49,11 +56,12 @@ mod tests {
     fn what_is_not_converged_is_counted_by_its_error() {
         let found = |error| Ok(Equivalent { conicity: 0.1, error });
         let all = [found(1e-5), found(1e-4), Err(NoConicity::NoAmplitude), Err(NoConicity::OffTrack)];
-        assert_eq!((inaccurate(&all), missing(&all)), (None, None));
+        let off = "no conicity at 1 position, from which a wheel leaves its rail before the movement turns";
+        assert_eq!((inaccurate(&all), missing(&all)), (None, vec![off.to_owned()]));
         let all = [found(2e-4), found(1e-3), found(0.5), found(0.0), Err(NoConicity::NotRestoring)];
         let expected = "conicity of 3 of 5 positions is not converged to 1e-4; estimated relative errors: 2 up to 1e-3, 1 more";
         assert_eq!(inaccurate(&all).as_deref(), Some(expected));
         let expected = "no conicity at 1 position, from which the movement does not come back";
-        assert_eq!(missing(&all).as_deref(), Some(expected));
+        assert_eq!(missing(&all), [expected]);
     }
 }

@@ -16,7 +16,7 @@ use crate::answer::{Outcome, complain, folder_of, print_to_reader};
 use crate::range::range;
 use positions::read_positions;
 use table::SweepTable;
-use wheelrail::case::{Arrangement, Case, PATCHES_FOLDER, ascending};
+use wheelrail::case::{Arrangement, Case, PATCHES_FOLDER, ascending, doubts_of_conicities};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::{Folder, NewFile};
 use wheelrail::scene::{self, Scene};
@@ -123,13 +123,16 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         progress.at(format!("equivalent conicity, {done} of at most {most} searches"));
     };
     let conicity = conicity_over(system, &positions, &mut told)?;
-    for remark in conicity.iter().flat_map(|conicity| conicity::remarks(conicity, &positions)) {
-        complain(&format!("sweep: {remark}"));
+    let radius = |side| case.profiles().on(Some(side)).pair.wheel_radius();
+    if let Some(conicity) = &conicity {
+        let doubts = doubts_of_conicities(system, conicity, &positions, case.landmarks(), radius)?;
+        for remark in conicity::remarks(conicity, &positions).into_iter().chain(doubts) {
+            complain(&format!("sweep: {remark}"));
+        }
     }
     let asked = case.question();
     let ellipses = asked.approach.map(|approach| (approach, asked.modulus()));
     let selection = Selection { within: case.setup().within, apart: ONE_CONTACT };
-    let profiles = case.profiles();
     let drawn = [("--picture", outputs.picture.is_some()), ("--html", outputs.html.is_some())];
     let drawn = drawn.into_iter().find_map(|(option, given)| given.then_some(option));
     if let Some(option) = drawn {
@@ -165,7 +168,6 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
     }
     outputs.commit()?;
     drop(progress);
-    let radius = |side| profiles.on(Some(side)).pair.wheel_radius();
     if let Some(line) = swept.doubts.line(table.positions.len(), radius) {
         complain(&format!("sweep: {line}"));
     }

@@ -153,3 +153,88 @@ fn what_cannot_be_is_refused() {
     let held = self::scene(folder.path(), &TRACK.replace("\"neglect\"", "0.001"));
     refused(&[&held], "roll solved or neglected");
 }
+
+/// A file of the scenes that once went wrong.
+fn defect(name: &str) -> String {
+    format!("{}/../../tests/defects/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The left wheel is 0.2 mm smaller: the movement turns at a flange on the left, far from there on the right.
+#[test]
+fn wheels_that_differ_have_the_conicity_of_their_motion_whatever_else_is_asked_for() {
+    let scene = defect("conicity-unequal.toml");
+    let column = |arguments: &[&str], number: usize| -> Vec<(f64, f64)> {
+        let output = Command::new(env!("CARGO_BIN_EXE_wheelrail")).args(arguments).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!said.contains("in two steps"), "{said}");
+        let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
+        let rows = reader.records().map(Result::unwrap);
+        rows.filter_map(|row| Some((row[0].parse().ok()?, row[number].parse().ok()?))).collect()
+    };
+    let wide = column(&["conicity", &scene, "--csv", "--gauges", "0:0:1"], 3);
+    let at = |all: &[(f64, f64)], amplitude: f64| {
+        all.iter().find(|(y, _)| (y - amplitude).abs() < 1e-9).map_or(f64::NAN, |(_, value)| *value)
+    };
+    // A quadrature over 12,610 touches has 0.65005, the two-step integration with its steps of 0.1 mm 0.653.
+    assert!((at(&wide, 8.0) - 0.65005).abs() < 1e-4, "{}", at(&wide, 8.0));
+    for (range, rows) in [("-3:3:1", 12), ("-8:8:1", 32), ("0:12:1", 24)] {
+        let swept = column(&["sweep", &scene, "--lateral", range], 12);
+        assert_eq!(swept.len(), rows, "{range}: {swept:?}");
+        for (y, value) in swept.iter().filter(|(y, _)| y.abs() <= 8.0) {
+            let expected = at(&wide, y.abs());
+            assert!((value / expected - 1.0).abs() < 2e-4, "{range} at {y}: {value}, not {expected}");
+        }
+    }
+}
+
+/// Radii that differ move the centre by millimetres, beyond every amplitude that is asked for: no sample is lost by that.
+#[test]
+fn noise_of_the_radii_is_not_that_of_the_samples_that_stay_near_the_middle() {
+    let scene = defect("conicity-noise.toml");
+    let options = ["--json", "--gauges", "0:0:1", "--noise", "radius=0.1", "--samples", "200"];
+    let json: Value = serde_json::from_str(&text(&[&[scene.as_str()][..], &options].concat())).unwrap();
+    let uncertainty = &json["uncertainty"];
+    assert_eq!(uncertainty["lost"]["conicity_3mm"], 0, "{uncertainty}");
+    let of = |key: &str| uncertainty["spreads"]["conicity_3mm"][key].as_f64().unwrap();
+    assert!((of("mean") - 0.041).abs() < 2e-3 && (of("deviation") - 0.035).abs() < 2e-3, "{uncertainty}");
+}
+
+/// Cones with radii that differ by millimetres have equal radii nowhere on their rails.
+#[test]
+fn samples_without_a_quantity_are_counted_and_said() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    let text = "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"cone-1:40\"\nradius = 460.0\n[track]\nspacing = 1500.0\n\
+                [wheelset]\nspacing = 1500.0\nroll = \"neglect\"\n";
+    fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    let options = [path, "--json", "--gauges", "0:0:1", "--noise", "radius=3", "--samples", "60"];
+    let output = conicity(&options);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let lost = json["uncertainty"]["lost"]["conicity_3mm"].as_u64().unwrap();
+    assert!((4..=60).contains(&lost), "{lost}");
+    assert!(json["uncertainty"]["spreads"]["conicity_3mm"].is_null());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains(&format!("{lost} of 60 samples of the noise have no conicity_3mm: no spread is given")),
+        "{said}"
+    );
+}
+
+/// A wheelset whose wheels stand on the tips of their flanges: every form of the output says so, as a sweep does.
+#[test]
+fn a_conicity_of_flange_tips_is_doubted() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene(folder.path(), &TRACK.replace("1435.0", "1315.0"));
+    let output = conicity(&[&scene, "--csv", "--gauges", "0:0:1"]);
+    let table = String::from_utf8(output.stdout).unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("in the column doubt; flange-tip at"), "{said}");
+    assert!(table.lines().next().unwrap().ends_with(",right_rolling_radius_mm,doubt"));
+    assert!(table.lines().skip(1).any(|line| line.contains("flange-tip")), "{table}");
+    assert!(text(&[&scene, "--gauges", "0:0:1"]).contains("flange-tip"));
+    let json = text(&[&scene, "--json", "--gauges", "0:0:1"]);
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["functions"]["doubt"].as_array().unwrap().len(), 161);
+    assert!(json["definitions"]["doubt"].is_string() && json["findings"].to_string().contains("flange-tip"));
+}

@@ -246,3 +246,38 @@ fn what_no_pair_can_be_made_of_ends_the_run_before_it_begins() {
     let output = run(here, &["--wheels", "wheels", "--out", "o"], 2);
     assert!(said(&output).contains("rails: found none; expected a folder of sections"), "{}", said(&output));
 }
+
+/// Wheels of different radii: a movement that turns far from the middle.
+#[test]
+fn wheelsets_that_differ_have_the_figures_of_their_motion() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    let defect = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/defects/fleet-unequal");
+    for file in ["fleet.toml", "w.csv", "w2.csv"] {
+        fs::copy(defect.join(file), here.join(file)).unwrap();
+    }
+    for (wheels, rails, wheelset, column, expected) in [
+        ("w.csv", "60E1", "d02", "nonlinearity_per_mm", 0.0628),
+        ("w2.csv", "54E1", "d01", "conicity", 0.0345),
+        ("w2.csv", "54E1", "d01", "nonlinearity_per_mm", -0.0003),
+    ] {
+        run(here, &["--wheels", wheels, "--rails", rails, "--out", wheels.trim_end_matches(".csv")], 0);
+        let rows = rows(&here.join(wheels.trim_end_matches(".csv")));
+        let row = rows.iter().find(|row| row["wheelset"] == wheelset).unwrap();
+        let found: f64 = row[column].parse().unwrap();
+        assert!((found - expected).abs() < 1e-4, "{wheelset} on {rails}, {column}: {found}");
+        assert!(!row["finding"].contains("in two steps"), "{row:?}");
+    }
+}
+
+#[test]
+fn a_wheelset_on_the_tips_of_its_flanges_is_doubted() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    fs::write(here.join("fleet.toml"), SCENE.replace("1435.0", "1315.0")).unwrap();
+    fs::write(here.join("w.csv"), "wheelset,left,right\nnew,S1002,S1002\n").unwrap();
+    let _ = command(here, &["--wheels", "w.csv", "--rails", "60E1", "--out", "out"]).output().unwrap();
+    let rows = rows(&here.join("out"));
+    assert!(rows[0]["doubt"].contains("flange-tip"), "{:?}", rows[0]);
+    assert!(rows[0]["finding"].contains("flange-tip at"), "{:?}", rows[0]);
+}

@@ -12,8 +12,10 @@ use crate::search::{Contact, Selection};
 /// tread.
 const NEAR: Selection = Selection { within: 1e-3, apart: 1e-3 };
 
-/// Step at which the centre of the movement is looked for \[mm\].
+/// Step at which the centre of the movement is looked for \[mm\], and the largest number of steps to one side: a metre, more than
+/// wheels move over rails.
 const STEP: f64 = 0.1;
+const FARTHEST: u32 = 10_000;
 
 /// Signs of the left and the right side's own x axis along the track's.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
@@ -71,26 +73,37 @@ impl<'a> Searched<'a> {
 }
 
 impl Searched<'_> {
-    /// Finds the places at one displacement \[mm\] as the mirror image of the wheelset has them at the opposite one: the sides are
-    /// swapped, and rates with respect to the displacement change sign.
+    /// Finds the places at a distance \[mm\] from a centre to one side: +1 to the right; −1 to the left, where they are those that the
+    /// mirror image of the wheelset has to the right. The sides are then swapped, and rates with respect to the displacement change
+    /// sign.
     ///
     /// # Errors
     /// The errors of [`Searched::at`].
-    pub(super) fn mirrored(&mut self, lateral: f64, sides: &mut SideBranches) -> Result<bool> {
-        let found = self.at(lateral, sides)?;
-        sides.swap(0, 1);
-        for place in sides.iter_mut().flatten() {
-            (place.climb, place.growth) = (-place.climb, -place.growth);
+    pub(super) fn beside(
+        &mut self,
+        centre: f64,
+        sign: f64,
+        u: f64,
+        sides: &mut SideBranches,
+    ) -> Result<bool> {
+        let found = self.at(centre + sign * u, sides)?;
+        if sign < 0.0 {
+            sides.swap(0, 1);
+            for place in sides.iter_mut().flatten() {
+                (place.climb, place.growth) = (-place.climb, -place.growth);
+            }
         }
         Ok(found)
     }
 
-    /// Finds the displacement nearest to 0 at which Δr vanishes or jumps through 0 while it grows \[mm\]; `None` if there is none
-    /// within the amplitude.
+    /// Finds the displacement nearest to 0 at which Δr grows through 0, continuously or by a jump \[mm\]; 0 where Δr vanishes there;
+    /// `None` if there is none as far as the track goes to both sides of 0.
+    ///
+    /// Method: searches every 0.1 mm, so that two such displacements nearer to each other may be missed.
     ///
     /// # Errors
     /// The errors of [`Searched::at`].
-    pub(super) fn centre(&mut self, amplitude: f64) -> Result<Option<f64>> {
+    pub(super) fn centre(&mut self) -> Result<Option<f64>> {
         let mut sides = SideBranches::default();
         let mut failure = None;
         let mut difference = |y: f64| match self.at(y, &mut sides) {
@@ -101,17 +114,23 @@ impl Searched<'_> {
                 f64::NAN
             }
         };
-        let mut near = 0.0;
-        let mut at_near = difference(near);
-        let step = -STEP * at_near.signum();
-        let mut centre = (at_near == 0.0).then_some(0.0);
-        while centre.is_none() && near.abs() < amplitude && !at_near.is_nan() {
-            let far = near + step;
-            let at_far = difference(far);
-            if at_far == 0.0 || (at_far > 0.0) != (at_near > 0.0) && !at_far.is_nan() {
-                centre = bracketed(&mut difference, near, far);
+        let mut ends = [(0.0, difference(0.0)); 2];
+        let mut centre = (ends[0].1 == 0.0).then_some(0.0);
+        for step in 1..=FARTHEST {
+            if centre.is_some() || ends.iter().all(|(_, value)| value.is_nan()) {
+                break;
             }
-            (near, at_near) = (far, at_far);
+            for (end, sign) in ends.iter_mut().zip(SIGNS).filter(|(end, _)| !end.1.is_nan()) {
+                let next = sign * STEP * f64::from(step);
+                let far = (next, difference(next));
+                let [low, high] = if sign < 0.0 { [far, *end] } else { [*end, far] };
+                *end = far;
+                if low.1 <= 0.0 && high.1 >= 0.0 {
+                    let crossing = bracketed(&mut difference, low.0, high.0);
+                    let nearer = |y: &f64| centre.is_none_or(|other: f64| y.abs() < other.abs());
+                    centre = crossing.filter(nearer).or(centre);
+                }
+            }
         }
         failure.map_or(Ok(centre), Err)
     }

@@ -7,6 +7,7 @@
 //! c)/d)^j. The moments ∫ (E − c)^j dy do not depend on ŷ and give the block's time.
 
 use crate::numerics::interval::Interval;
+use crate::numerics::roots::last_where;
 
 /// Number of terms of the series of 1/√(1 − t).
 const TERMS: usize = 16;
@@ -50,11 +51,13 @@ pub(super) struct Knot {
 }
 
 /// Δr over \[0, ŷ_max\], prepared for any amplitude.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Movement {
     knots: Vec<Knot>,
     /// E at the knots \[mm²\].
     energy: Vec<f64>,
+    /// Largest E up to each knot \[mm²\].
+    highest: Vec<f64>,
     /// Sum of the squares of the defects up to each knot \[mm⁴\]: errors of cells are independent.
     squares: Vec<f64>,
     /// Blocks as a heap: block k consists of blocks 2k and 2k + 1, the last half are the smallest.
@@ -105,7 +108,11 @@ impl Movement {
             energy.push(energy[k] + (cell[1].y - cell[0].y) * (cell[0].force + cell[1].force));
             squares.push(squares[k] + cell[1].defect * cell[1].defect);
         }
-        let mut movement = Self { knots, energy, squares, blocks: Vec::new() };
+        let mut movement = Self { knots, energy, highest: vec![0.0], squares, blocks: Vec::new() };
+        for cell in 0..movement.cells() {
+            let peak = movement.peak(cell, movement.knots[cell + 1].y);
+            movement.highest.push(movement.highest[cell].max(peak));
+        }
         let smallest = movement.cells().div_ceil(SMALLEST).next_power_of_two();
         movement.blocks = (0..2 * smallest).map(|k| movement.block(k, smallest)).collect();
         movement
@@ -128,13 +135,34 @@ impl Movement {
         (above < self.knots.len()).then(|| above.checked_sub(1)).flatten()
     }
 
-    /// Returns E at an amplitude \[mm²\]; `None` beyond the last cell.
-    pub(super) fn energy_at(&self, amplitude: f64) -> Option<f64> {
-        let cell = self.cell(amplitude)?;
+    /// Returns where the last cell ends \[mm\].
+    pub(super) fn reach(&self) -> f64 {
+        self.knots.last().map_or(0.0, |knot| knot.y)
+    }
+
+    /// Returns the largest E within an amplitude \[mm²\], beyond the last cell that within all cells: a movement turns there only if it
+    /// has this energy.
+    pub(super) fn highest_at(&self, amplitude: f64) -> f64 {
+        match self.cell(amplitude) {
+            Some(cell) => self.highest[cell].max(self.peak(cell, amplitude)),
+            None if amplitude > 0.0 => self.highest.last().copied().unwrap_or(0.0),
+            None => 0.0,
+        }
+    }
+
+    /// Returns the larger of E at an amplitude in `cell` and of the top of E in the cell before it \[mm²\].
+    fn peak(&self, cell: usize, amplitude: f64) -> f64 {
         let [inner, outer] = [self.knots[cell], self.knots[cell + 1]];
-        let run = amplitude - inner.y;
-        let force = inner.force + run / (outer.y - inner.y) * (outer.force - inner.force);
-        Some(self.energy[cell] + run * (inner.force + force))
+        let (run, width) = (amplitude - inner.y, outer.y - inner.y);
+        if width <= 0.0 {
+            return self.energy[cell];
+        }
+        let stiffness = (outer.force - inner.force) / width;
+        let force = inner.force + run * stiffness;
+        if inner.force > 0.0 && force < 0.0 {
+            return self.energy[cell] - inner.force * inner.force / stiffness;
+        }
+        self.energy[cell] + run * (inner.force + force)
     }
 
     /// Returns the quarter of the movement with its turning point ŷ in `cell`; `None` if the movement does
@@ -198,6 +226,20 @@ impl Movement {
             }
         }
     }
+}
+
+/// Finds the distances from the centre, to the left and to the right, at which a movement with this amplitude \[mm\] turns whose two
+/// sides differ: 2 ŷ apart, at one energy. `None` where one of them lies beyond its side's last cell.
+///
+/// The movements of all energies about one centre lie in each other, so that there is at most one of a width. There is none where a
+/// hump of E is just passed, since the movement then is wider at once: [`Movement::quarter`] does not come back from the distances that
+/// are found there.
+pub(super) fn turning([left, right]: [&Movement; 2], amplitude: f64) -> Option<[f64; 2]> {
+    let span = 2.0 * amplitude;
+    let [from, to] = [(span - left.reach()).max(0.0), span.min(right.reach())];
+    let within = |right_turn: f64| right.highest_at(right_turn) <= left.highest_at(span - right_turn);
+    let enclosed = from <= to && within(from) && (to == span || !within(to));
+    enclosed.then(|| last_where(within, from, to)).map(|right_turn| [span - right_turn, right_turn])
 }
 
 impl TimeSum<'_> {

@@ -7,7 +7,7 @@ use super::movement::Knot;
 use crate::error::Result;
 
 /// Widest cell of the table \[mm\], as in EN 15302.
-const WIDEST: f64 = 0.1;
+pub(super) const WIDEST: f64 = 0.1;
 
 /// Smallest amplitude \[mm\] for whose conicity the table is refined; at smaller ones the results say how accurate
 /// they are. Without this limit all searches would go to a jump of Δr at 0, which counts the same for every
@@ -28,9 +28,12 @@ const BENDS: u32 = 4;
 /// Returns the most searches for an amplitude \[mm\] and a relative accuracy ε of the conicity: 1 + log₂ 1/ε
 /// for every tenth of a millimetre, with which halving alone would find one hop in each.
 pub(super) fn most_searches(amplitude: f64, accuracy: f64) -> usize {
-    let halvings = 1.0 + (1.0 / accuracy).log2().max(0.0).ceil();
     // Saturates: an amplitude of a kilometre ends with the track.
-    ((amplitude / WIDEST).ceil() * halvings) as usize
+    ((amplitude / WIDEST).ceil() * halvings(accuracy)) as usize
+}
+
+fn halvings(accuracy: f64) -> f64 {
+    1.0 + (1.0 / accuracy).log2().max(0.0).ceil()
 }
 
 /// A hop of the contact to another place of its side.
@@ -79,9 +82,15 @@ pub(super) struct RefinedTable<F> {
     /// Fills in the places of contact at a displacement; returns false off the track.
     search: F,
     sides: SideBranches,
+    /// Relative accuracy that halving alone would find hops to.
+    accuracy: f64,
     searches: usize,
-    most: usize,
     cells: Vec<BetweenNodes>,
+    /// The end of the table; `None` of a wheelset that is off its track at 0.
+    outermost: Option<Node>,
+    /// Number of first cells, before any was split, and the mean of |Δr| over them \[mm\].
+    first_cells: usize,
+    mean: f64,
     /// Cells that are not fine enough, as (bits of the influence, index): the bits order as non-negative
     /// numbers do.
     waiting: BinaryHeap<(u64, usize)>,
@@ -93,30 +102,67 @@ impl<F: FnMut(f64, &mut SideBranches) -> Result<bool>> RefinedTable<F> {
     /// # Errors
     /// The errors of `search`.
     pub(super) fn new(search: F, amplitude: f64, accuracy: f64) -> Result<Self> {
+        let mut table = Self::at_centre(search, accuracy)?;
+        let steps = (amplitude / WIDEST).ceil();
+        for k in 1..=steps as u64 {
+            if !table.extend(amplitude * k as f64 / steps)? {
+                break;
+            }
+        }
+        Ok(table)
+    }
+
+    /// Makes the table of the displacement 0 alone.
+    ///
+    /// # Errors
+    /// The errors of `search`.
+    pub(super) fn at_centre(search: F, accuracy: f64) -> Result<Self> {
         let mut table = Self {
             search,
             sides: SideBranches::default(),
+            accuracy,
             searches: 0,
-            most: most_searches(amplitude, accuracy),
             cells: Vec::new(),
+            outermost: None,
+            first_cells: 0,
+            mean: 0.0,
             waiting: BinaryHeap::new(),
         };
-        let steps = (amplitude / WIDEST).ceil();
-        let Some(mut last) = table.searched(0.0)? else { return Ok(table) };
-        let mut mean = 0.0;
-        for k in 1..=steps as u64 {
-            let Some(next) = table.searched(amplitude * k as f64 / steps)? else { break };
-            mean += (next.value.abs() - mean) / k as f64;
-            table.push(BetweenNodes::new([last, next], mean));
-            last = next;
-        }
-        table.most = table.most.min(most_searches(last.y, accuracy));
+        table.outermost = table.searched(0.0)?;
         Ok(table)
+    }
+
+    /// Adds a cell up to a displacement \[mm\]; returns false, and adds none, where the wheelset is off its track.
+    ///
+    /// # Errors
+    /// The errors of the search.
+    pub(super) fn extend(&mut self, y: f64) -> Result<bool> {
+        let Some(last) = self.outermost else { return Ok(false) };
+        let Some(next) = self.searched(y)? else { return Ok(false) };
+        self.first_cells += 1;
+        self.mean += (next.value.abs() - self.mean) / self.first_cells as f64;
+        self.push(BetweenNodes::new([last, next], self.mean));
+        self.outermost = Some(next);
+        Ok(true)
+    }
+
+    /// Adds cells of the same width over at least `length` \[mm\]; returns false where the wheelset leaves its track within them.
+    ///
+    /// # Errors
+    /// The errors of the search.
+    pub(super) fn lengthen(&mut self, length: f64) -> Result<bool> {
+        let last = self.first_cells.saturating_add((length / WIDEST).ceil().max(1.0) as usize);
+        while self.first_cells < last {
+            if !self.extend(WIDEST * (self.first_cells + 1) as f64)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Returns the number of searches so far, and the most that there will be.
     pub(super) fn searches(&self) -> [usize; 2] {
-        [self.searches, self.most]
+        [self.searches, (self.first_cells as f64 * halvings(self.accuracy)) as usize]
     }
 
     /// Splits the cells that change a conicity by more than this relative influence, the most influential
@@ -125,13 +171,14 @@ impl<F: FnMut(f64, &mut SideBranches) -> Result<bool>> RefinedTable<F> {
     /// # Errors
     /// The errors of the search.
     pub(super) fn refine(&mut self, influence: f64, told: &mut dyn FnMut(usize, usize)) -> Result<()> {
-        while self.searches < self.most
+        let [_, most] = self.searches();
+        while self.searches < most
             && let Some(&(bits, index)) = self.waiting.peek()
             && f64::from_bits(bits) > influence
         {
             self.waiting.pop();
             self.split(index)?;
-            told(self.searches, self.most);
+            told(self.searches, most);
         }
         Ok(())
     }

@@ -153,6 +153,14 @@ impl SawTooth {
     }
 }
 
+/// Returns the conicities of a Δr that a search gives, up to 5 mm.
+fn refined(search: impl FnMut(f64, &mut SideBranches) -> Result<bool>) -> Result<Conicity> {
+    let mut table = RefinedTable::new(search, 5.0, ACCURACY)?;
+    let right = Swing::refined(&mut table, &mut |_, _| {})?;
+    let [searches, _] = table.searches();
+    Ok(Conicity { centre: Some(0.0), right, left: None, searches })
+}
+
 #[test]
 fn the_conicity_of_a_saw_tooth_is_that_of_its_energy() -> Result<()> {
     for (period, depth) in [(0.7, 0.02), (0.0317, 2e-3), (0.3, 0.1)] {
@@ -161,7 +169,7 @@ fn the_conicity_of_a_saw_tooth_is_that_of_its_energy() -> Result<()> {
             saw.places(y, sides);
             Ok(true)
         };
-        let conicity = Conicity::refined(RefinedTable::new(search, 5.0, ACCURACY)?, &mut |_, _| {})?;
+        let conicity = refined(search)?;
         for amplitude in [0.02, 0.35, 1.0, 2.11, 3.0, 4.9999, 5.0] {
             let expected = conicity_of(quadrature(|y| saw.energy(y), amplitude, 1_000_000));
             let found = conicity.at(amplitude);
@@ -190,7 +198,7 @@ fn more_hops_than_searches_give_a_flagged_result() -> Result<()> {
             sides[1].truncate(1);
             Ok(true)
         };
-        let conicity = Conicity::refined(RefinedTable::new(search, 5.0, ACCURACY)?, &mut |_, _| {})?;
+        let conicity = refined(search)?;
         assert_eq!(conicity.searches(), Conicity::most_searches(5.0));
         for amplitude in [0.35, 1.0, 2.11, 3.0, 4.9] {
             let expected = conicity_of(quadrature(|y| saw.energy(y), amplitude, 1_000_000));
@@ -413,4 +421,41 @@ fn two_different_cones_swing_about_the_place_of_equal_radii() -> Result<()> {
         assert!(found.is_ok_and(|found| (found - 0.0375).abs() < 1e-6), "{amplitude}: {found:?}");
     }
     Ok(())
+}
+
+/// Forces that are the same all over each side: with the larger one the movement turns nearer to the centre.
+#[test]
+fn a_movement_turns_at_one_energy_on_both_sides_or_beyond_the_table() {
+    let [wall, tread] = [movement(&[[0.0, 8.0], [3.0, 8.0]]), movement(&[[0.0, 0.5], [20.0, 0.5]])];
+    for amplitude in [0.3, 4.0, 10.6] {
+        let near = 2.0 * amplitude * 0.5 / 8.5;
+        let both = [turning([&wall, &tread], amplitude), turning([&tread, &wall], amplitude)];
+        let found = both.map(|turns| turns.unwrap_or([f64::NAN; 2]));
+        let close = |found: [f64; 2], expected: [f64; 2]| {
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12)
+        };
+        let far = 2.0 * amplitude - near;
+        assert!(close(found[0], [near, far]) && close(found[1], [far, near]), "{amplitude}: {found:?}");
+    }
+    // The tread ends at 20 mm, with the wall at 1.25 mm; a wall of 0.1 mm has the energy of 1.6 mm of tread.
+    assert_eq!(turning([&wall, &tread], 10.7), None);
+    let low = movement(&[[0.0, 8.0], [0.1, 8.0]]);
+    assert!(turning([&low, &tread], 0.84).is_some());
+    assert_eq!((turning([&low, &tread], 0.86), turning([&tread, &low], 0.86)), (None, None));
+}
+
+/// E has a top at 1 on the right, which the movement passes with 1 on the left: it then goes to 2.25 at once.
+#[test]
+fn no_movement_is_as_wide_as_up_to_behind_a_hump() {
+    let left = movement(&[[0.0, 1.0], [9.0, 1.0]]);
+    let right = movement(&[[0.0, 1.0], [1.0, 1.0], [1.0, -1.0], [2.0, -1.0], [2.0, 4.0], [9.0, 4.0]]);
+    for (amplitude, expected) in
+        [(0.99, true), (1.01, false), (1.3, false), (1.62, false), (1.63, true), (3.0, true)]
+    {
+        let turns = turning([&left, &right], amplitude).unwrap_or([f64::NAN; 2]);
+        let comes_back = [(&left, turns[0]), (&right, turns[1])]
+            .into_iter()
+            .all(|(side, turn)| side.cell(turn).and_then(|cell| side.quarter(cell, turn)).is_some());
+        assert_eq!(comes_back, expected, "{amplitude}: {turns:?}");
+    }
 }
