@@ -21,7 +21,7 @@ const SYSTEMS: u64 = 315;
 /// Step \[mm\] of the first touches of the test, how far to both sides they go, the largest change of Δr \[mm\] from one to the next, and the
 /// width \[mm\] from which on a jump is left as it is.
 const STEP: f64 = 0.02;
-const REACH: i32 = 1250;
+const REACH: i32 = 2000;
 const CHANGE: f64 = 0.004;
 const NARROWEST: f64 = 1e-7;
 
@@ -138,7 +138,7 @@ fn crossing(run: f64, stiffness: f64, energies: [f64; 2]) -> f64 {
     }
 }
 
-/// A pair of profiles whose left wheel is smaller in radius.
+/// A wheelset whose left wheel is smaller in radius, and perhaps another one.
 struct Unequal {
     name: String,
     pairs: [Pair; 2],
@@ -147,17 +147,20 @@ struct Unequal {
 }
 
 impl Unequal {
-    fn new([rail, wheel]: [&str; 2], [run, gauge, smaller]: [f64; 3], roll: Roll) -> Result<Self> {
+    fn new([rail, left, right]: [&str; 3], [run, gauge, smaller]: [f64; 3], roll: Roll) -> Result<Self> {
         let rail_profile = standards::rail(rail)?.rotated(inclination(1.0, run)?);
-        let pair = |radius: f64| Pair::new(rail_profile.clone(), standards::wheel(wheel)?, radius);
-        let pairs = [pair(460.0 - smaller)?, pair(460.0)?];
+        let pair =
+            |wheel: &str, radius: f64| Pair::new(rail_profile.clone(), standards::wheel(wheel)?, radius);
+        let pairs = [pair(left, 460.0 - smaller)?, pair(right, 460.0)?];
         let side = |pair: &Pair| {
             let track = Track::new(pair.rail(), RailDistance::Gauge { gauge, height: 14.0 })?;
             let wheels = WheelDistance::BackToBack { distance: 1360.0, flange_back_x: -70.0 };
             SideOnTrack::new(pair, track, Wheelset::new(wheels, pair.wheel_radius())?)
         };
         let system = WheelsetOnTrack::of_sides(side(&pairs[0])?, side(&pairs[1])?);
-        let name = format!("{rail} 1:{run}, {wheel}, gauge {gauge}, left smaller by {smaller} mm, {roll:?}");
+        let name = format!(
+            "{rail} 1:{run}, {left} and {right}, gauge {gauge}, left smaller by {smaller} mm, {roll:?}"
+        );
         Ok(Self { name, pairs, system, roll })
     }
 
@@ -167,10 +170,10 @@ impl Unequal {
             let k = (number * 59 % SYSTEMS) as usize;
             let (rail, wheel, smaller) = (RAILS[k % 5], WHEELS[k / 5 % 7], SMALLER[k / 35]);
             let run = [20.0, 30.0, 40.0][(k % 5 + k / 5 % 7) % 3];
-            return Self::new([rail, wheel], [run, 1435.0, smaller], Roll::Neglect);
+            return Self::new([rail, wheel, wheel], [run, 1435.0, smaller], Roll::Neglect);
         }
         let mut random = Random::stream(65, number);
-        let names = [*random.pick(&RAILS), *random.pick(&WHEELS)];
+        let names = [*random.pick(&RAILS), *random.pick(&WHEELS), *random.pick(&WHEELS)];
         let run = *random.pick(&[20.0, 30.0, 40.0]);
         let gauge = random.between(1430.0, 1442.0);
         let smaller = random.between(-1.2, 1.2);
@@ -247,7 +250,7 @@ fn doubts_of_conicity_are_those_of_a_sweep() -> Result<()> {
     let (mut random, mut doubtful) = (Random::new(66), 0);
     for _ in 0..campaign::scenes().min(300) {
         let gauge = random.between(1300.0, 1500.0);
-        let names = [*random.pick(&RAILS), *random.pick(&WHEELS)];
+        let names = [*random.pick(&RAILS), *random.pick(&WHEELS), *random.pick(&WHEELS)];
         let Ok(Unequal { name, pairs, system, roll }) =
             Unequal::new(names, [40.0, gauge, random.between(-1.0, 1.0)], Roll::Neglect)
         else {
