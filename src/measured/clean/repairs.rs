@@ -67,20 +67,36 @@ fn drop_duplicates(points: &mut Vec<Point>) -> Vec<Point> {
 }
 
 fn sort(points: &mut [Point]) -> Vec<Point> {
+    let path = Path::of(points);
+    let vertices = &path.course.at;
+    let mut length = vec![0.0];
+    vertices.windows(2).for_each(|pair| length.push(length[length.len() - 1] + distance(&pair[0], &pair[1])));
+    let first_points: Vec<usize> =
+        (0..vertices.len()).map(|v| path.on[path.course.points_of(v).start]).collect();
     let mut moved = Vec::new();
     let mut sorted_to = 0;
-    for fold in folds(&Path::of(points)).into_iter().filter(|fold| fold.to > fold.from) {
-        if fold.from >= sorted_to {
-            sorted_to = sort_fold(points, fold, &mut moved);
+    for fold in folds(&path).into_iter().filter(|fold| fold.to > fold.from) {
+        // The path that leads to the fold, from where it was not sorted yet.
+        let range = first_points.partition_point(|&k| k < sorted_to)
+            ..first_points.partition_point(|&k| k <= fold.from);
+        if fold.from >= sorted_to && range.len() > 1 {
+            let track =
+                Track { at: &vertices[range.clone()], length: &length[range.clone()], near: range.len() - 1 };
+            sorted_to = sort_fold(points, fold, sorted_to, track, &mut moved);
         }
     }
     moved
 }
 
-/// Sorts the points of one fold, and those over which it runs back, along the path that leads to the fold. Returns the index after
-/// the last sorted point.
-fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize {
-    let mut track = Track::new(&points[..=fold.from]);
+/// Sorts the points of one fold, and those from `sorted_to` on over which it runs back, along the path that leads to the fold. Returns
+/// the index after the last sorted point.
+fn sort_fold(
+    points: &mut [Point],
+    fold: Fold,
+    sorted_to: usize,
+    mut track: Track<'_>,
+    moved: &mut Vec<Point>,
+) -> usize {
     let mut along: Vec<f64> = Vec::new();
     for (k, point) in points.iter().enumerate().skip(fold.from + 1) {
         let at = track.walk_to(point);
@@ -93,7 +109,7 @@ fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize 
     let least = along.iter().copied().fold(f64::INFINITY, f64::min);
     let mut low = fold.from + 1;
     let mut before: Vec<f64> = Vec::new();
-    while low > 0 {
+    while low > sorted_to {
         let at = track.walk_to(&points[low - 1]);
         if at < least {
             break;
@@ -114,27 +130,20 @@ fn sort_fold(points: &mut [Point], fold: Fold, moved: &mut Vec<Point>) -> usize 
     high + 1
 }
 
-/// The smoothed path that leads to a fold, with a place on it that is walked from point to point.
-struct Track {
-    at: Vec<Point>,
+/// The smoothed path that leads to a fold, of two vertices or more, with a place on it that is walked from point to point.
+struct Track<'a> {
+    at: &'a [Point],
     /// Length of the path up to each vertex \[mm\].
-    length: Vec<f64>,
+    length: &'a [f64],
     /// Vertex of the place.
     near: usize,
 }
 
-impl Track {
+impl Track<'_> {
     /// Number of vertices ahead of the place that are looked at: noise may make the next one no nearer.
     const AHEAD: usize = 8;
 
-    fn new(points: &[Point]) -> Self {
-        let at = Path::of(points).course.at;
-        let mut length = vec![0.0];
-        at.windows(2).for_each(|pair| length.push(length[length.len() - 1] + distance(&pair[0], &pair[1])));
-        Self { near: at.len().saturating_sub(1), at, length }
-    }
-
-    /// Returns the length of the whole path \[mm\].
+    /// Returns the length up to the last vertex \[mm\].
     fn end(&self) -> f64 {
         self.length[self.length.len() - 1]
     }
@@ -151,19 +160,18 @@ impl Track {
             }
             self.near = nearest;
         }
-        let last = self.at.len() - 1;
-        let (a, b) =
-            if self.near < last { (self.near, self.near + 1) } else { (last.saturating_sub(1), last) };
-        let chord = distance(&self.at[a], &self.at[b]);
-        let [p, q] = [&self.at[a], &self.at[b]];
-        let share = ((point.x - p.x) * (q.x - p.x) + (point.z - p.z) * (q.z - p.z)) / chord;
-        self.length[a] + share
+        let a = self.near.min(self.at.len() - 2);
+        let [p, q] = [&self.at[a], &self.at[a + 1]];
+        let chord = distance(p, q);
+        let along = (point.x - p.x) * (q.x - p.x) + (point.z - p.z) * (q.z - p.z);
+        self.length[a] + if chord > 0.0 { along / chord } else { 0.0 }
     }
 }
 
 fn remove_spikes(points: &mut Vec<Point>) -> Vec<Point> {
-    let runs = Path::of(points).runs;
-    drop_all(points, |k| runs.iter().any(|run| (run.from..=run.to).contains(&k)))
+    let mut off = vec![true; points.len()];
+    Path::of(points).on.into_iter().for_each(|k| off[k] = false);
+    drop_all(points, |k| off[k])
 }
 
 /// Drops what lies beyond the only place where the path turns back, if it is short.
