@@ -108,8 +108,10 @@ pub(super) fn resolve(points: &mut Points, side: Side, options: &Options) -> Res
     if let Some(error) = no_order(&placed).filter(|_| wrong_unit.is_none() && !sorted) {
         return Err(error);
     }
+    let mut judged = judged;
     if outline(&placed).is_some() {
         transform.begin_at_foot(points, side);
+        judged.at = Path::judged(&points.at, unit);
     } else {
         transform.reverse(&judged.at);
     }

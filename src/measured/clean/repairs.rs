@@ -176,7 +176,7 @@ fn remove_spikes(points: &mut Vec<Point>) -> Vec<Point> {
 
 /// Drops what lies beyond the only place where the path turns back, if it is short.
 fn cut_overhang(points: &mut Vec<Point>) -> Vec<Point> {
-    let [fold] = folds(points)[..] else { return Vec::new() };
+    let [fold] = folds(&Path::of(points))[..] else { return Vec::new() };
     let (at, last) = (fold.from, points.len() - 1);
     let length = |range: std::ops::RangeInclusive<usize>| -> f64 {
         points[range].windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
