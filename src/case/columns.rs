@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::doubts::DoubtSet;
+use super::doubts::{DoubtKind, DoubtSet};
 use super::input::ApproachBy;
 use crate::load::curvatures_at;
 use crate::search::{Contact, SweepRow, TrackSide};
@@ -90,7 +90,7 @@ pub struct SweepColumns {
     pub position: Vec<u64>,
     /// Whether the contact is on the right-hand side.
     pub right: Vec<bool>,
-    /// Number of the contact on its side, from 1, by ascending gap.
+    /// Number of the contact on its side, from 1, by ascending gap; 0 where a list of slices defines no surface under the wheel.
     pub contact: Vec<u32>,
     /// Whether a body touches with a kink, step or end.
     pub kink: Vec<bool>,
@@ -158,6 +158,24 @@ impl SweepColumns {
         for (column, numbers) in COLUMNS.iter().zip(&mut self.numbers) {
             if let ColumnValues::Number(of, _) = column.values {
                 numbers.push(of(row, axes));
+            }
+        }
+    }
+
+    /// Appends the row of a side without a surface: contact 0, and no numbers but the position's, lateral \[mm\] and yaw \[rad\].
+    pub(super) fn push_hole(&mut self, position: usize, side: TrackSide, [lateral, yaw]: [f64; 2]) {
+        self.position.push(position as u64);
+        self.right.push(side == TrackSide::Right);
+        self.contact.push(0);
+        self.kink.push(false);
+        self.doubt.push(DoubtSet::of(DoubtKind::Hole));
+        for (column, numbers) in COLUMNS.iter().zip(&mut self.numbers) {
+            if column.is_number() {
+                numbers.push(match column.name {
+                    "lateral_mm" => lateral,
+                    "yaw_rad" => yaw,
+                    _ => f64::NAN,
+                });
             }
         }
     }

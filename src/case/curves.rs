@@ -90,12 +90,13 @@ pub fn curves(columns: &SweepColumns, lateral: &[f64], title: &str, about: &str)
 }
 
 /// Draws quantities of both sides' lowest contacts (heading, axis with unit, column, factor) over an abscissa with its name. `beside` are
-/// columns that a sweep does not have.
+/// columns that a sweep does not have, `parted` the values after which no curve goes on.
 ///
 /// # Errors
 /// Values of the abscissa that do not ascend.
 pub(super) fn over(
     (columns, beside): (&SweepColumns, &[(&str, &[f64])]),
+    parted: &[usize],
     (name, abscissa): (&str, &[f64]),
     quantities: &[(&str, &str, &str, f64)],
     (title, about): (&str, &str),
@@ -105,7 +106,7 @@ pub(super) fn over(
     let sides = [("left", false), ("right", true)];
     let jumps = sides.map(|(_, right)| {
         let places = ["rail_x_mm", "wheel_x_mm", "y_mm"].map(|name| lowest.values(right, name));
-        jumps(&places.each_ref().map(Vec::as_slice))
+        [parted, &jumps(&places.each_ref().map(Vec::as_slice))].concat()
     });
     let panel = |&(title, axis, column, factor): &(&str, &str, &str, f64)| {
         let curve = |((name, right), jumps): ((&str, bool), &Vec<usize>)| {

@@ -48,11 +48,13 @@ pub enum DoubtKind {
     Speed,
     /// Two integrations of an equivalent conicity differ by more than their errors.
     Integrations,
+    /// A list of slices defines no surface under the wheel.
+    Hole,
 }
 
 impl DoubtKind {
     /// All kinds.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::FlangeTip,
         Self::FlangeBack,
         Self::Lifted,
@@ -73,11 +75,12 @@ impl DoubtKind {
         Self::Kink,
         Self::Speed,
         Self::Integrations,
+        Self::Hole,
     ];
 
     /// The kinds about a place of contact: those that a sweep names at each position.
-    pub const OF_CONTACT: [Self; 5] =
-        [Self::FlangeTip, Self::FlangeBack, Self::Lifted, Self::BeyondTread, Self::RollingRadius];
+    pub const OF_CONTACT: [Self; 6] =
+        [Self::FlangeTip, Self::FlangeBack, Self::Lifted, Self::BeyondTread, Self::RollingRadius, Self::Hole];
 
     /// Gives the word that stands for the kind in tables.
     pub fn word(self) -> &'static str {
@@ -102,6 +105,7 @@ impl DoubtKind {
             Self::Kink => "kink",
             Self::Speed => "speed",
             Self::Integrations => "integrations",
+            Self::Hole => "hole",
         }
     }
 
@@ -157,6 +161,9 @@ impl DoubtKind {
                 "trust neither: look at the rolling radius difference beside the turning points and for jumps of it, and take \
                  smaller steps"
             }
+            Self::Hole => {
+                "give features, or slices that show the same parts; the warnings about the list say which do not"
+            }
         }
     }
 }
@@ -197,7 +204,13 @@ impl DoubtSet {
         Self(self.0 | other.0)
     }
 
-    /// Gives the number of the set, below 2⁵.
+    /// Gives the set of one kind; of a kind that is about no contact, the empty one.
+    pub fn of(kind: DoubtKind) -> Self {
+        let bits = DoubtKind::OF_CONTACT.iter().enumerate().map(|(k, own)| u8::from(*own == kind) << k);
+        Self(bits.sum())
+    }
+
+    /// Gives the number of the set, below 2⁶.
     pub fn code(self) -> u8 {
         self.0
     }
@@ -236,6 +249,7 @@ impl Doubt {
             DoubtKind::FlangeTip => format!("the wheel stands on the tip of its flange, {on_wheel}"),
             DoubtKind::FlangeBack => format!("the wheel stands on the back of its flange, {on_wheel}"),
             DoubtKind::Lifted => format!("the wheel's tread is {value:.2} mm above the top of the rail"),
+            DoubtKind::Hole => "the list of slices defines no surface under the wheel".into(),
             DoubtKind::BeyondTread => format!("the wheel touches {value:.2} mm from the tip of its flange"),
             _ => {
                 let rolling = radius + value;

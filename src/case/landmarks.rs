@@ -117,7 +117,7 @@ impl Landmarks {
         // R − z is the rolling radius.
         let off = !on_tip && !on_back && at.angles[0].abs() < TREAD && z.abs() > RADIUS_OFF;
         let lift = lifted.then_some(lift);
-        ContactDoubts([on_tip.then_some(x), on_back.then_some(x), lift, from_tip, off.then_some(-z)])
+        ContactDoubts([on_tip.then_some(x), on_back.then_some(x), lift, from_tip, off.then_some(-z), None])
     }
 }
 

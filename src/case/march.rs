@@ -7,7 +7,7 @@ use super::places::rows_under_load;
 use super::run::end_reached;
 use super::wheel::ContactRegion;
 use crate::error::{Result, in_order};
-use crate::search::{Event, March, Stop, SweepRow};
+use crate::search::{Event, March, Position, Stop, SweepRow};
 
 /// What a march goes along: the column of its places, and the axis of its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,8 +65,12 @@ pub struct MarchRow {
 pub struct MarchStop {
     /// The place along the track \[mm\], or the pitch \[rad\].
     pub along: f64,
-    /// Contacts of both sides, the left one first; none where a wheel has no rail.
+    /// Contacts of both sides, the left one first; none where a wheel has no rail, and over a hole.
     pub rows: Vec<MarchRow>,
+    /// Whether the left and the right wheel stand over a hole of a list of slices, or would touch at its edge.
+    pub holes: [bool; 2],
+    /// Lateral displacement \[mm\] and yaw \[rad\].
+    pub stands: [f64; 2],
 }
 
 /// Says at how many places of a march the end of the slices cuts a patch off; `None` where at none.
@@ -74,6 +78,14 @@ pub fn cut_off_warning(places: usize) -> Option<String> {
     let some = if places == 1 { "1 place".to_owned() } else { format!("{places} places") };
     (places > 0).then(|| {
         format!("the end of the slices cuts off a patch at {some}: approaches there are too large; list more slices")
+    })
+}
+
+/// Says at how many places of a march a list of slices defines no surface under a wheel; `None` where at none.
+pub fn hole_warning(places: usize) -> Option<String> {
+    let some = if places == 1 { "1 place".to_owned() } else { format!("{places} places") };
+    (places > 0).then(|| {
+        format!("a hole at {some}: the list defines no surface there, or contact would be at its edge")
     })
 }
 
@@ -138,6 +150,7 @@ impl MarchCase {
             }
             _ => stop.rows.iter().copied().map(MarchRow::touching).collect(),
         };
-        Ok(MarchStop { along, rows })
+        let Position { lateral, yaw, .. } = self.march.position;
+        Ok(MarchStop { along, rows, holes: stop.holes, stands: [lateral, yaw] })
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::columns::SweepColumns;
 use super::doubts::DoubtSet;
 use super::march::{MarchCourse, MarchRow, MarchStop};
-use crate::search::{Contact, Event};
+use crate::search::{Contact, Event, TrackSide};
 
 /// Gives the first line of the table of stops: the columns of a sweep between the place and [`MARCH_NUMBERS`].
 pub fn march_head(course: MarchCourse) -> String {
@@ -27,8 +27,15 @@ pub struct MarchColumns {
 }
 
 impl MarchColumns {
-    /// Appends the rows of a stop with this number.
+    /// Appends the rows of a stop with this number; over a hole each wheel there has one without numbers, with the doubt `hole`.
     pub fn push(&mut self, number: usize, stop: &MarchStop) {
+        for (side, _) in
+            [TrackSide::Left, TrackSide::Right].into_iter().zip(stop.holes).filter(|(_, hole)| *hole)
+        {
+            self.along.push(stop.along);
+            self.columns.push_hole(number, side, stop.stands);
+            self.numbers.iter_mut().for_each(|column| column.push(f64::NAN));
+        }
         for MarchRow { row, approach, normal_load, .. } in &stop.rows {
             self.along.push(stop.along);
             self.columns.push(number, row, None, DoubtSet::default());

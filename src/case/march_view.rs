@@ -4,8 +4,10 @@ use super::curves::over;
 use super::march::{AROUND, MarchCase, MarchCourse};
 use super::march_table::{MARCH_NUMBERS, MarchColumns, event_numbers};
 use super::sweep_view::{Shown, page_of};
+use super::view::with_minus;
 use crate::error::Result;
-use crate::export::{CurvesPicture, PageEvent, PageEvents, SweepPage};
+use crate::export::{CurvesPicture, PageEvent, PageEvents, SEPARATOR, SweepPage};
+use crate::numerics::interval::Interval;
 use crate::search::Event;
 
 /// Quantities of each side's lowest contact that the picture shows: heading, axis with unit, column, factor.
@@ -26,6 +28,9 @@ const CARRIED: [(&str, &str, &str, f64); 2] = [
 
 /// Largest number of events that a page lists; the others are counted.
 const MOST_LISTED: usize = 400;
+
+/// Largest number of holes that a picture names; the others are counted.
+const MOST_NAMED: usize = 6;
 
 /// The events of a march that its page lists.
 #[derive(Debug, Clone, Default)]
@@ -101,11 +106,40 @@ impl DrawnMarch<'_> {
     /// Places that do not ascend.
     pub fn picture(&self) -> Result<CurvesPicture> {
         let [title, about] = self.headings;
+        let ends = [self.places.first(), self.places.last()].map(|end| end.copied().unwrap_or_default());
+        let holes = self.case.march.holes(ends.into());
+        let hole_between =
+            |pair: &[f64]| holes.iter().any(|hole| hole.overlaps(Interval::new(pair[0], pair[1])));
+        let parted: Vec<usize> = (1..self.places.len())
+            .filter(|&k| hole_between(&self.places[k - 1..=k]))
+            .map(|k| k - 1)
+            .collect();
+        let about = [about, &self.without_surface(&holes)].concat();
         let carried = self.columns.carried();
         let beside: Vec<(&str, &[f64])> =
             MARCH_NUMBERS[1..].iter().copied().zip(carried.into_iter().flatten()).collect();
         let shown = [SHOWN.as_slice(), if carried.is_some() { &CARRIED } else { &[] }].concat();
-        over((&self.columns.columns, &beside), (self.course.axis, self.places), &shown, (title, about))
+        let abscissa = (self.course.axis, self.places);
+        over((&self.columns.columns, &beside), &parted, abscissa, &shown, (title, &about))
+    }
+
+    /// Says where no surface is defined; nothing without holes.
+    fn without_surface(&self, holes: &[Interval]) -> String {
+        let decimals = self.course.decimals;
+        let list: Vec<String> = holes
+            .iter()
+            .take(MOST_NAMED)
+            .map(|hole| with_minus(&format!("{:.decimals$} to {:.decimals$}", hole.low, hole.high)))
+            .collect();
+        let more = match holes.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        if list.is_empty() {
+            more
+        } else {
+            format!("{SEPARATOR}holes without a surface: {}{more}", list.join(", "))
+        }
     }
 
     /// Makes the page: the curves of the picture over a slider along the course, with the sections of rails and wheels at every stop.

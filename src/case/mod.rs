@@ -73,7 +73,7 @@ pub use input::{
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};
-pub use march::{ALONG, AROUND, MarchCase, MarchCourse, MarchRow, MarchStop, cut_off_warning};
+pub use march::{ALONG, AROUND, MarchCase, MarchCourse, MarchRow, MarchStop, cut_off_warning, hole_warning};
 pub use march_table::{
     EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, append_event, event_numbers, events_head, march_head,
 };

@@ -13,6 +13,7 @@ use super::pressure::PartPressure;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
 use crate::error::{Result, in_order};
+use crate::numerics::interval::Interval;
 use crate::patch::Patch;
 use crate::placement::{Creepages, Placement};
 use crate::search::TrackSide;
@@ -185,7 +186,16 @@ const AT_SLICE: f64 = 0.1;
 /// Gives the end of the slices \[mm\] that a patch on a rail that varies along the track reaches: there is no surface beyond.
 pub(super) fn end_reached(placement: &Placement, patch: &Patch) -> Option<f64> {
     let lofted = placement.lofted_rail()?;
-    let (slices, along) = (lofted.loft().reach(), patch.extent()?.eta.map(|eta| lofted.along_at(0.0, eta)));
+    let (loft, along) = (lofted.loft(), patch.extent()?.eta.map(|eta| lofted.along_at(0.0, eta)));
+    // As far as there is a surface from C.
+    let slices = loft.holes.iter().fold(loft.reach(), |reach, hole| {
+        let Interval { low, high } = reach;
+        if hole.high <= lofted.along() {
+            Interval::new(hole.high, high)
+        } else {
+            Interval::new(low, high.min(hole.low))
+        }
+    });
     match () {
         () if along.low <= slices.low + AT_SLICE => Some(slices.low),
         () if along.high >= slices.high - AT_SLICE => Some(slices.high),

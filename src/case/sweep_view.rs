@@ -137,7 +137,8 @@ impl Shown<'_> {
             gap: Vec::new(),
             load: Vec::new(),
         };
-        for row in (0..self.columns.rows()).filter(|&row| self.columns.right[row] == right) {
+        let shown = |row: &usize| self.columns.right[*row] == right && self.columns.contact[*row] > 0;
+        for row in (0..self.columns.rows()).filter(shown) {
             let value = |name: &str| self.columns.quantity(name).map_or(f64::NAN, |column| column[row]);
             let number = self.columns.position[row] as usize;
             out.position.push(number);

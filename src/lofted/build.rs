@@ -1,10 +1,9 @@
 //! Makes the surface of a list of slices.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::joining::Joining;
+use super::parts::{PartRun, Parts, without_features};
 use super::strip::{Bay, LoftStrip};
 use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::numerics::interval::Interval;
@@ -19,13 +18,6 @@ const MARKS: f64 = 0.05;
 
 /// Most points of a surface; each takes 130 bytes.
 const MOST_POINTS: usize = 4_000_000;
-
-/// Jump of a slice's length, as a share of it, across which a list without features defines no surface: the slices do not show the
-/// same parts.
-const JUMP_OF_LENGTH: f64 = 0.06;
-
-/// Jump of a slice's end, as a share of its length, across which a list without features defines no surface.
-const JUMP_OF_ENDS: f64 = 0.1;
 
 /// One slice of a list.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +40,9 @@ pub struct LoftSlice {
 pub struct Loft {
     /// The parts of its surface.
     pub strips: Vec<LoftStrip>,
+    /// Where between two slices the list defines no surface at all \[mm\], in order. What a list with features leaves out is no hole: it
+    /// says that there is nothing.
+    pub holes: Vec<Interval>,
     /// Where the slices leave the surface undefined, and why; where a cubic surface folds over.
     pub warnings: Vec<String>,
     reach: Interval,
@@ -70,13 +65,18 @@ impl Loft {
     pub fn new(slices: &[LoftSlice], joining: Joining) -> Result<Self> {
         check(slices)?;
         let divided = in_order(slices.par_iter().map(divide))?;
-        let (runs, mut warnings) = runs(slices, &divided);
+        let Parts { runs, holes, mut warnings } = if slices[0].features.len() < 2 {
+            without_features(slices, &divided.iter().map(|slice| slice.marks.as_slice()).collect::<Vec<_>>())
+        } else {
+            Parts { runs: of_features(&divided), ..Parts::default() }
+        };
         let (mut strips, mut total) = (Vec::new(), 0);
-        for (part, run) in runs {
-            let points = spread_all(&divided[run.clone()], part, &mut total)?;
-            let at = slices[run.clone()].iter().map(|slice| slice.at).collect();
-            let strip = LoftStrip::new(part, at, &points, joining);
-            match fold(&strip, &slices[run]) {
+        for run in runs {
+            let points = spread_all(&run, &divided, &mut total)?;
+            let own = &slices[run.first..run.first + run.spans.len()];
+            let at = own.iter().map(|slice| slice.at).collect();
+            let strip = LoftStrip::new(run.part, at, &points, joining);
+            match fold(&strip, own) {
                 Some(found) if joining == Joining::Monotone => {
                     let advice = "give features, or slices that show the same parts";
                     return Err(Error::new("slices", found, "slices that correspond", advice));
@@ -89,12 +89,13 @@ impl Loft {
             let expected = "a part that two successive slices have";
             return Err(Error::new("slices", "no such part", expected, "correct the features"));
         }
-        Ok(Self { strips, warnings, reach: Interval::new(slices[0].at, slices[slices.len() - 1].at) })
+        let reach = Interval::new(slices[0].at, slices[slices.len() - 1].at);
+        Ok(Self { strips, holes, warnings, reach })
     }
 
     /// Makes the surface of strips that cover a range of y \[mm\].
     pub(super) fn of_strips(strips: Vec<LoftStrip>, reach: Interval) -> Self {
-        Self { strips, warnings: Vec::new(), reach }
+        Self { strips, holes: Vec::new(), warnings: Vec::new(), reach }
     }
 
     /// Gives the interval from the first slice to the last \[mm\].
@@ -161,63 +162,35 @@ fn divide(slice: &LoftSlice) -> Result<Divided> {
     Ok(Divided { marks, parts })
 }
 
-/// Finds the runs of successive slices that have a part, two at least, with its number. Where a list without features leaves the
-/// surface undefined a run ends, and a warning says why.
-fn runs(slices: &[LoftSlice], divided: &[Divided]) -> (Vec<(usize, Range<usize>)>, Vec<String>) {
-    let (mut runs, mut warnings) = (Vec::new(), Vec::new());
+/// Finds the runs of successive slices that have a part, two at least.
+fn of_features(divided: &[Divided]) -> Vec<PartRun> {
+    let mut runs = Vec::new();
     let parts = divided.first().map_or(0, |slice| slice.parts.len());
     for part in 0..parts {
-        let mut from = 0;
-        for k in 0..divided.len() {
-            let goes_on = divided[k].parts[part].is_some()
-                && divided.get(k + 1).is_some_and(|next| next.parts[part].is_some());
-            let jump = (goes_on && slices[k].features.len() < 2)
-                .then(|| jump([&slices[k], &slices[k + 1]], [&divided[k], &divided[k + 1]]))
-                .flatten();
-            if goes_on && jump.is_none() {
-                continue;
+        let mut first = 0;
+        for run in divided.chunk_by(|a, b| a.parts[part].is_some() == b.parts[part].is_some()) {
+            let spans: Vec<Interval> = run.iter().filter_map(|slice| slice.parts[part]).collect();
+            if spans.len() > 1 {
+                runs.push(PartRun { part, first, spans });
             }
-            if k > from && divided[k].parts[part].is_some() {
-                runs.push((part, from..k + 1));
-            }
-            warnings.extend(jump);
-            from = k + 1;
+            first += run.len();
         }
     }
-    (runs, warnings)
+    runs
 }
 
-/// Says how two slices without features differ too much to be joined; `None` for slices that may be.
-fn jump(slices: [&LoftSlice; 2], divided: [&Divided; 2]) -> Option<String> {
-    let [a, b] = divided.map(|slice| slice.marks.as_slice());
-    let ends = [a.first()?, a.last()?].into_iter().zip([b.first()?, b.last()?]);
-    let moved =
-        ends.map(|(a, b)| (b.station.x - a.station.x).hypot(b.station.z - a.station.z)).fold(0.0, f64::max);
-    let [own, other] = [a.last()?.s, b.last()?.s];
-    let shorter = own.min(other);
-    let how = if (own - other).abs() > JUMP_OF_LENGTH * shorter {
-        format!("their lengths are {own:.1} and {other:.1} mm")
-    } else if moved > JUMP_OF_ENDS * shorter {
-        format!("an end moves by {moved:.1} mm")
-    } else {
-        return None;
-    };
-    let [from, to] = slices.map(|slice| format!("{} at {:.2} mm", slice.name, slice.at));
-    Some(format!("no surface between {from} and {to}: {how}, and the list gives no features"))
-}
-
-/// Lists the points \[x, z\] of a part on all slices of a run, at equal shares of its arc length; `total` counts those of all parts.
-fn spread_all(run: &[Divided], part: usize, total: &mut usize) -> Result<Vec<Vec<[f64; 2]>>> {
-    let spans = || run.iter().filter_map(|slice| Some((slice.marks.as_slice(), slice.parts[part]?)));
-    let longest = spans().map(|(_, span)| span.width()).fold(0.0, f64::max);
+/// Lists the points \[x, z\] of a part on the slices of a run, at equal shares of its arc length; `total` counts those of all parts.
+fn spread_all(run: &PartRun, divided: &[Divided], total: &mut usize) -> Result<Vec<Vec<[f64; 2]>>> {
+    let longest = run.spans.iter().map(|span| span.width()).fold(0.0, f64::max);
     let cells = (longest / SPACING).ceil().max(1.0) as usize;
-    *total += (cells + 1) * run.len();
+    *total += (cells + 1) * run.spans.len();
     if *total > MOST_POINTS {
         let expected = format!("{MOST_POINTS} points at most, {SPACING} mm apart on all slices");
         let advice = "list the slices near the place that you look at";
         return Err(Error::new("slices", "more points", expected, advice).of_kind(ErrorKind::Limit));
     }
-    Ok(spans().map(|(marks, span)| spread(marks, span, cells)).collect())
+    let slices = divided[run.first..].iter().zip(&run.spans);
+    Ok(slices.map(|(slice, span)| spread(&slice.marks, *span, cells)).collect())
 }
 
 /// Lists the points \[x, z\] at equal shares of an arc length along a curve.

@@ -8,8 +8,9 @@
 //! overshoot where slices do not correspond. Across, a cubic spline goes through all points of a part. So the surface is a bicubic
 //! over each cell, continuous with its slopes along the track and with its curvature across, and bounded by its control points.
 //!
-//! A part that a slice does not have begins or ends at its neighbour. Without features a slice is one part; where its length or its
-//! ends jump from one slice to the next, the list defines no surface between the two ([`Loft::warnings`]).
+//! A part that a slice does not have begins or ends at its neighbour. Without features a slice is one part, beside what an instrument
+//! has seen of a flank deeper down than on the slice's neighbour; where its length or its ends jump otherwise, the list defines no
+//! surface between the two ([`Loft::holes`]).
 //!
 //! # A profile that keeps its shape
 //!
@@ -26,6 +27,7 @@ mod build;
 mod framed;
 mod joining;
 mod kept;
+mod parts;
 mod runs;
 mod section;
 mod space;
@@ -38,6 +40,7 @@ pub use bicubic::{Bicubic, SurfacePoint};
 pub use build::{Loft, LoftSlice, SPACING};
 pub use framed::{Feet, FramedLoft, LoftFoot};
 pub use joining::Joining;
+pub(crate) use section::section_through;
 pub use section::{joined, section};
 pub use space::{Laid, SpacePoint};
 pub(crate) use space::{directions, on_wheel};

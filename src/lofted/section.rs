@@ -8,12 +8,23 @@ use crate::profile::{Polynomial, Profile, Segment, Shape};
 /// Largest distance \[mm\] between the ends of two neighbouring parts that join: more than the rounding of slices.
 const STEP: f64 = 1e-3;
 
-/// Returns the section at y \[mm\] through one of the strips, as far as its neighbours join it: exactly the cut of the surface, one
-/// cubic a cell.
+/// Least share of a cell at which it is divided: a tangent changes by far less than rounding over a shorter one.
+const SLIVER: f64 = 1e-9;
+
+/// Returns the section at y \[mm\] through one of the strips, as far as its neighbours join it: the cut of the surface, one cubic a
+/// cell. Of a profile that keeps its shape the cubics are off by [`LoftStrip::off`].
 ///
 /// # Errors
 /// A place where the strip has no surface.
 pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
+    section_through(loft, strip, [f64::NAN, y])
+}
+
+/// Returns the section at y \[mm\] as [`section`] does, whose cubics have the surface's own point and tangent at u of the strip, too.
+///
+/// # Errors
+/// Those of [`section`].
+pub(crate) fn section_through(loft: &Loft, strip: usize, [u, y]: [f64; 2]) -> Result<Profile> {
     let strips = &loft.strips;
     if !strips[strip].holds(y) {
         let [from, to] = strips[strip].reach().ends();
@@ -21,7 +32,8 @@ pub fn section(loft: &Loft, strip: usize, y: f64) -> Result<Profile> {
         return Err(Error::new("along", format!("{y:?} mm"), expected, "choose another place"));
     }
     let run = joined(loft, strip, y);
-    let segments = run.into_iter().flat_map(|k| spans(&strips[k], y)).collect::<Result<Vec<_>>>()?;
+    let own = |k: usize| if k == strip { u } else { f64::NAN };
+    let segments = run.into_iter().flat_map(|k| spans(&strips[k], own(k), y)).collect::<Result<Vec<_>>>()?;
     Profile::new(format!("section at {y:.3} mm"), "a cut of a list of slices", segments)
 }
 
@@ -44,22 +56,28 @@ pub fn joined(loft: &Loft, strip: usize, y: f64) -> Vec<usize> {
     run
 }
 
-/// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out.
-fn spans(strip: &LoftStrip, y: f64) -> Vec<Result<Segment>> {
-    let node = |k: usize| strip.point(k as f64, y);
-    let mut from = node(0);
-    let mut out = Vec::with_capacity(strip.cells());
-    for k in 1..=strip.cells() {
-        let to = node(k);
+/// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out. Where the cubics are not the surface itself, one
+/// begins at u, too.
+fn spans(strip: &LoftStrip, u: f64, y: f64) -> Vec<Result<Segment>> {
+    let divided = strip.off() > 0.0;
+    let shares = |cell: usize| {
+        let share = u - cell as f64;
+        if divided && share > SLIVER && share < 1.0 - SLIVER {
+            vec![[0.0, share], [share, 1.0]]
+        } else {
+            vec![[0.0, 1.0]]
+        }
+    };
+    let ranges = (0..strip.cells()).flat_map(|cell| shares(cell).into_iter().map(move |ends| (cell, ends)));
+    let segment = |(cell, ends): (usize, [f64; 2])| {
+        let [from, to] = ends.map(|share| strip.point_of(cell, share, y));
         let cubic = |axis: usize| {
-            let (rise, [a, b]) = (to.at[axis] - from.at[axis], [from.across[axis], to.across[axis]]);
+            let rise = to.at[axis] - from.at[axis];
+            let [a, b] = [from, to].map(|end| end.across[axis] * (ends[1] - ends[0]));
             [from.at[axis], a, 3.0 * rise - 2.0 * a - b, a + b - 2.0 * rise]
         };
-        if from.at != to.at {
-            let shape = Polynomial::span(&cubic(0), &cubic(1), [0.0, 1.0]).map(Shape::Polynomial);
-            out.push(shape.map(|shape| Segment { label: String::new(), shape }));
-        }
-        from = to;
-    }
-    out
+        let shape = || Polynomial::span(&cubic(0), &cubic(1), [0.0, 1.0]).map(Shape::Polynomial);
+        (from.at != to.at).then(|| shape().map(|shape| Segment { label: String::new(), shape }))
+    };
+    ranges.filter_map(segment).collect()
 }

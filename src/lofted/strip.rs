@@ -121,7 +121,13 @@ impl LoftStrip {
     #[inline(always)]
     pub fn point(&self, u: f64, y: f64) -> SurfacePoint {
         let cell = (u.max(0.0) as usize).min(self.cells - 1);
-        let (bay, f) = (self.bay_at(y), u - cell as f64);
+        self.point_of(cell, u - cell as f64, y)
+    }
+
+    /// Returns the point at a share of a cell and y \[mm\]. Derivatives with respect to the share may jump from one cell to the next.
+    #[inline(always)]
+    pub(super) fn point_of(&self, cell: usize, f: f64, y: f64) -> SurfacePoint {
+        let bay = self.bay_at(y);
         match &self.surface {
             StripSurface::Joined { corners, .. } => {
                 joined(corners, self.cells, &self.at, [bay.index, cell]).point(f, y)

@@ -126,7 +126,9 @@ impl MarchSides<'_> {
         let loft = loft(rail, &folder.join(list)).map_err(|error| error.within(&rail_key))?;
         lists.take(&loft, &rail_key);
         let first = loft.strips.first().map_or(0.0, |strip| strip.reach().low);
-        let section = section(&loft, loft.widest(first).unwrap_or(0), first)?;
+        let mut section = section(&loft, loft.widest(first).unwrap_or(0), first)?;
+        // The march cuts another section at every place.
+        section.name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy().into_owned();
         let varying = Some(LoftedBody::Rail(Arc::new(loft)));
         let track = moved(Track::between_origins(spacing)?)?;
         on_track((Pair::new(section, resolved.profile, radius)?, varying), track, axle)

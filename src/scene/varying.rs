@@ -43,7 +43,11 @@ pub(super) fn wheel(
         let wheel = wheel_of_slices(data, &sources.0.join(list), radius).map_err(within)?;
         let mut profile = wheel.lowest(pitch).map_err(within)?;
         let name = list.file_name().unwrap_or(list.as_os_str()).to_string_lossy();
-        profile.name = format!("{name}, {}", profile.name);
+        profile.name = match pitch {
+            Some(_) => format!("{name}, {}", profile.name),
+            // A march cuts another section at every pitch.
+            None => name.into_owned(),
+        };
         let resolved = Resolved { profile, measured: None };
         return Ok(WheelBody { resolved, radius, varying: Some(wheel) });
     }

@@ -1,5 +1,7 @@
 //! Marches: a wheelset goes along rails that vary, or turns with wheels that vary, and touches at every place.
 
+use std::f64::consts::TAU;
+
 use rayon::prelude::*;
 
 use super::position::Position;
@@ -44,8 +46,10 @@ enum Course {
 pub struct Stop {
     /// The place along the track \[mm\], or the pitch \[rad\].
     pub along: f64,
-    /// Contacts of both sides, the left one first; none where a wheel has no rail.
+    /// Contacts of both sides, the left one first; none where a wheel has no rail, and over a hole.
     pub rows: Vec<SweepRow>,
+    /// Whether the left and the right wheel stand over a hole of a list of slices, or would touch at its edge.
+    pub holes: [bool; 2],
 }
 
 /// What happens to a wheel between two places.
@@ -122,6 +126,11 @@ impl Stop {
     pub fn of(&self, side: TrackSide) -> impl Iterator<Item = &Contact> {
         self.rows.iter().filter(move |row| row.side == side).map(|row| &row.contact)
     }
+
+    /// Tells whether a wheel stands over a hole.
+    fn over_hole(&self) -> bool {
+        self.holes.contains(&true)
+    }
 }
 
 const SIDES: [TrackSide; 2] = [TrackSide::Left, TrackSide::Right];
@@ -180,6 +189,30 @@ impl March {
         way.goes()?;
         way.stop(&mut way.begin(), pitch)
     }
+
+    /// Lists the holes of the lists of slices under both wheels that reach into a range of places \[mm\], or where the rails do not vary of
+    /// pitches \[rad\]: where no surface is defined, in order. Between them and contacts at their edges a march has neither rows nor events.
+    pub fn holes(&self, range: Interval) -> Vec<Interval> {
+        let along_rails = self.reach.low.is_finite();
+        let mut found = Vec::new();
+        for right in [false, true] {
+            let side = if right { self.system.right() } else { self.system.left() };
+            let holes = side.pair.holes().into_iter();
+            if along_rails {
+                let ahead = self.system.along(right, &self.position, 0.0);
+                found.extend(holes.map(|hole| hole + -ahead));
+            } else {
+                let turns = (range.low / TAU).floor() as i32 - 1..=(range.high / TAU).ceil() as i32 + 1;
+                found.extend(
+                    holes.flat_map(|hole| turns.clone().map(move |turn| hole + TAU * f64::from(turn))),
+                );
+            }
+        }
+        found.retain(|hole| hole.overlaps(range));
+        found.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
+        found.dedup();
+        found
+    }
 }
 
 impl<'a> Way<'a> {
@@ -233,7 +266,7 @@ impl<'a> Way<'a> {
             Course::Pitch => sweep.stand_at(0.0, along),
         }
         sweep.position(&self.march.position, &mut rows)?;
-        Ok(Stop { along, rows })
+        Ok(Stop { along, rows, holes: sweep.over_holes() })
     }
 
     /// Rejects bodies that do not vary along the course.
@@ -276,10 +309,10 @@ impl<'a> Way<'a> {
         Err(Error::new(name, format!("{at} {unit}"), expected, "march where the lists reach"))
     }
 
-    /// Appends the events between two stops, each refined by halving.
+    /// Appends the events between two stops, each refined by halving. Up to a hole there may be some, across it there are none.
     fn between(&self, sweep: &mut Sweep<'_>, a: &Stop, b: &Stop, events: &mut Vec<Event>) -> Result<()> {
         let changes = SIDES.map(|side| self.change(a, b, side));
-        if changes == [None; 2] {
+        if changes == [None; 2] && a.over_hole() == b.over_hole() {
             return Ok(());
         }
         let refined = match self.course {
@@ -296,8 +329,11 @@ impl<'a> Way<'a> {
         self.between(sweep, &middle, b, events)
     }
 
-    /// Says what happens to a side from one stop to the next; `None` if it rolls on.
+    /// Says what happens to a side from one stop to the next; `None` if it rolls on, and over a hole.
     fn change(&self, before: &Stop, after: &Stop, side: TrackSide) -> Option<Event> {
+        if before.over_hole() || after.over_hole() {
+            return None;
+        }
         let [was, is] = [before, after].map(|stop| stop.of(side).next().copied());
         let [had, has] = [before, after].map(|stop| self.second(stop, side).map(|contact| contact.gap));
         let kind = match (was, is) {
@@ -320,8 +356,14 @@ impl<'a> Way<'a> {
 
     /// Finds the least clearances of second places that end in a block; `open` is the one that has not ended yet.
     fn clearances(&self, stops: &[Stop], side: TrackSide, open: &mut Option<Event>) -> Vec<Event> {
-        let mut ended = Vec::new();
+        let (mut ended, mut before) = (Vec::new(), f64::NAN);
         for stop in stops {
+            if stop.over_hole() {
+                // A clearance that still falls at the edge of a hole may be less inside.
+                ended.extend(open.take().filter(|least| least.along != before));
+                continue;
+            }
+            before = stop.along;
             let (lowest, second) = (stop.of(side).next().copied(), self.second(stop, side));
             let gap = second.map(|second| second.gap);
             match gap {

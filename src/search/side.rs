@@ -8,6 +8,7 @@ use super::lofted::{Cut, LoftedPair, LoftedSearch};
 use super::over_rail::Work;
 use super::touch::{ContactSearch, ProfilePair, Selection, Touch};
 use crate::error::Result;
+use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Track, Wheelset};
 
 /// One side of a wheelset on its track, in the side's own axes: those of a right-hand side.
@@ -89,6 +90,14 @@ impl SidePair {
         }
     }
 
+    /// Lists where a list of slices defines no surface: see [`LoftedPair::holes`].
+    pub fn holes(&self) -> Vec<Interval> {
+        match self {
+            Self::Swept(_) => Vec::new(),
+            Self::Lofted(pair) => pair.holes(),
+        }
+    }
+
     /// Gives the radius of a roller \[mm\]; `None` for a rail.
     pub fn roller(&self) -> Option<f64> {
         match self {
@@ -122,6 +131,14 @@ impl SideSearch<'_> {
         match self {
             Self::Swept(search) => search.lower(attitude, within),
             Self::Lofted(search) => search.lower(attitude, within),
+        }
+    }
+
+    /// Tells whether a list of slices defines no surface where the wheel stands, or where it would touch at its lowest place.
+    pub fn over_hole(&self, attitude: &Attitude, lowest: Option<&Meeting>) -> bool {
+        match self {
+            Self::Swept(_) => false,
+            Self::Lofted(search) => search.over_hole(attitude, lowest),
         }
     }
 

@@ -99,6 +99,11 @@ impl<'a> Sweep<'a> {
         self.search.stand_at(along, pitch);
     }
 
+    /// Tells which wheels had a hole under them at the last position: see [`WheelsetSearch::over_holes`].
+    pub fn over_holes(&self) -> [bool; 2] {
+        self.search.over_holes()
+    }
+
     /// Appends the rows of one position to `rows`, left side first; none if the position has no contact.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use super::locus::Attitude;
 use super::over_rail::{RailSearch, SearchPair, Work};
 use super::roller::{Meridian, at_own_turn, lower_on_roller};
 use crate::error::{Error, ErrorKind, Result, finite};
-use crate::lofted::{FramedLoft, LoftedBody, section};
+use crate::lofted::{FramedLoft, LoftedBody, section_through};
 use crate::placement::{Pair, Placement};
 use crate::profile::{Profile, Section, Side};
 
@@ -237,6 +237,14 @@ pub(super) fn beside_its_rail() -> Error {
     no_contact("contact: offset", "a wheel over its rail", "check offset and signs")
 }
 
+/// Says that a list of slices defines no surface where wheels stand or would touch.
+pub(super) fn over_hole(place: &str, wheels: &str) -> Error {
+    let found = format!("a hole of the list: no surface under {wheels}");
+    let expected = "a place where neighbouring slices show the same, or a list that gives its features";
+    Error::new(place, found, expected, "take another place; the warnings about the list say why")
+        .of_kind(ErrorKind::NoContact)
+}
+
 /// Says that a wheel or a wheelset touches nothing.
 pub(super) fn no_contact(place: &str, expected: &str, advice: &str) -> Error {
     Error::new(place, "no contact", expected, advice).of_kind(ErrorKind::NoContact)
@@ -391,7 +399,8 @@ impl Contact {
         };
         let (loft, foot) = (framed.loft(), framed.foot(0.0, 0.0).ok_or_else(nowhere)?);
         let reach = loft.strips[foot.strip].reach();
-        let section = section(loft, foot.strip, framed.along().clamp(reach.low, reach.high))?;
+        let y = framed.along().clamp(reach.low, reach.high);
+        let section = section_through(loft, foot.strip, [foot.place[0], y])?;
         let pair = match framed.side() {
             Side::Rail => pair.with_rail(section)?,
             Side::Wheel => pair.with_wheel(section.upside_down())?,

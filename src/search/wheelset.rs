@@ -12,7 +12,7 @@ use super::locus::Attitude;
 use super::over_rail::Work;
 use super::position::{Position, Roll};
 use super::side::{SideOnTrack, SidePair, SideSearch};
-use super::touch::{Selection, Touch, no_contact, small_angle};
+use super::touch::{Selection, Touch, no_contact, over_hole, small_angle};
 use crate::error::{Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
@@ -116,6 +116,8 @@ impl WheelsetOnTrack {
 pub struct WheelsetSearch<'a> {
     system: &'a WheelsetOnTrack,
     sides: [SideSearch<'a>; 2],
+    /// Which wheels stood over a hole of a list of slices, or would have touched at its edge, at the last position.
+    over_holes: [bool; 2],
 }
 
 /// First touch of both wheels.
@@ -134,12 +136,25 @@ pub struct WheelsetTouch<'a> {
 pub(crate) struct LowestPlaces {
     roll: f64,
     meetings: [Meeting; 2],
+    /// Derivative of the difference of the sides' heights with respect to the roll, over that of two treads \[1\].
+    steadiness: f64,
 }
 
 impl LowestPlaces {
     /// Gives the elements of wheel and rail that meet on each side. While they stay the same, results are analytic in the position.
     pub fn elements(&self) -> [[u32; 2]; 2] {
         self.meetings.map(|meeting| meeting.elements)
+    }
+
+    /// Gives the rate at which the heights of both sides part with the roll, as a share of that of level treads. Where it falls to 0 the
+    /// roll at which both wheels touch ends: beyond there is another one, or none.
+    pub fn steadiness(&self) -> f64 {
+        self.steadiness
+    }
+
+    /// Gives the roll \[rad\].
+    pub fn roll(&self) -> f64 {
+        self.roll
     }
 }
 
@@ -191,7 +206,8 @@ struct Lowered {
 impl WheelsetOnTrack {
     /// Makes a search over this system. On rails that vary the middle of the axle is at 0 of their lists.
     pub fn search(&self) -> WheelsetSearch<'_> {
-        WheelsetSearch { system: self, sides: self.sides.each_ref().map(|side| side.pair.search()) }
+        let sides = self.sides.each_ref().map(|side| side.pair.search());
+        WheelsetSearch { system: self, sides, over_holes: [false; 2] }
     }
 
     /// Returns where a wheel's profile is in the axes of its rail's profile, in the section through the axle: the isometry takes
@@ -240,11 +256,18 @@ impl WheelsetSearch<'_> {
     /// # Errors
     /// Values that are not finite; angles beyond ±0.5 rad; a rail that varies and follows the wheel's shape all over. Of the kind
     /// [`ErrorKind::NoContact`](crate::ErrorKind::NoContact): a side with no wheel over its rail; a roll to be solved where within
-    /// ±0.1 rad there is none at which both wheels touch.
+    /// ±0.1 rad there is none at which both wheels touch; a hole of a list of slices under a wheel.
     pub fn touch(&mut self, position: &Position, selection: &Selection) -> Result<WheelsetTouch<'_>> {
         let expected = "wheels over their rails, and a roll within ±0.1 rad at which both sides touch";
-        let nowhere = || no_contact("wheelset: lateral", expected, "check lateral, gauge and signs");
-        self.touch_near(position, selection, None)?.ok_or_else(nowhere)
+        match self.lowered(position, selection, None)? {
+            Some(level) => Ok(self.collected(&level, selection)),
+            None => Err(match self.over_holes {
+                [false, false] => no_contact("wheelset: lateral", expected, "check lateral, gauge and signs"),
+                [true, true] => over_hole("wheelset: along", "both wheels"),
+                [true, false] => over_hole("wheelset: along", "the left wheel"),
+                [false, true] => over_hole("wheelset: along", "the right wheel"),
+            }),
+        }
     }
 
     /// Lowers the wheelset as [`WheelsetSearch::touch`] does, from the places of a touch nearby; `None` where there is no contact. Where
@@ -259,8 +282,31 @@ impl WheelsetSearch<'_> {
         selection: &Selection,
         near: Option<&LowestPlaces>,
     ) -> Result<Option<WheelsetTouch<'_>>> {
+        let level = self.lowered(position, selection, near)?;
+        Ok(level.map(|level| self.collected(&level, selection)))
+    }
+
+    /// Tells which wheels stood over a hole of a list of slices, or would have touched at its edge, at the last position: left, right. There
+    /// is no contact then.
+    pub fn over_holes(&self) -> [bool; 2] {
+        self.over_holes
+    }
+
+    /// Lowers both sides, and leaves the candidates in their buffers; `None` where there is no contact, or no surface under a wheel.
+    fn lowered(
+        &mut self,
+        position: &Position,
+        selection: &Selection,
+        near: Option<&LowestPlaces>,
+    ) -> Result<Option<Lowered>> {
         finite("wheelset: lateral", position.lateral)?;
         small_angle("wheelset: yaw", position.yaw)?;
+        let system = self.system;
+        let placed = [0, 1].map(|k| system.attitude(position, 0.0, k).0);
+        self.over_holes = [0, 1].map(|k| self.sides[k].over_hole(&placed[k], None));
+        if self.over_holes.contains(&true) {
+            return Ok(None);
+        }
         let reach = selection.within;
         let level = match position.roll {
             Roll::Neglect => self.level(position, 0.0, reach),
@@ -276,14 +322,22 @@ impl WheelsetSearch<'_> {
         };
         let [left, right] = &mut self.sides;
         left.answered().and(right.answered())?;
-        let Some(Lowered { kept, heights, attitudes, meetings }) = level else { return Ok(None) };
-        let KeptPlaces { roll, z, .. } = kept;
+        let Some(level) = level else { return Ok(None) };
+        self.over_holes =
+            [0, 1].map(|k| self.sides[k].over_hole(&level.attitudes[k], Some(&level.meetings[k])));
+        Ok((!self.over_holes.contains(&true)).then_some(level))
+    }
+
+    /// Collects the contacts of `selection` among the candidates of both sides.
+    fn collected(&mut self, level: &Lowered, selection: &Selection) -> WheelsetTouch<'_> {
+        let Lowered { kept: KeptPlaces { roll, z, slope }, heights, attitudes, meetings } = *level;
+        let steadiness = slope / self.system.sides.iter().map(|side| side.track.rail_x).sum::<f64>();
         let [left, right] = &mut self.sides;
         let sides = [
             SideTouch { z: z[0], touch: left.collect(&attitudes[0], heights[0], selection) },
             SideTouch { z: z[1], touch: right.collect(&attitudes[1], heights[1], selection) },
         ];
-        Ok(Some(WheelsetTouch { roll, sides, places: LowestPlaces { roll, meetings } }))
+        WheelsetTouch { roll, sides, places: LowestPlaces { roll, meetings, steadiness } }
     }
 
     /// Returns the heights of the axle's middle \[mm\], of the left and the right side, at which the wheels touch at the places of a

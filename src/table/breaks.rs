@@ -130,15 +130,18 @@ pub(super) fn divide(
     }
     let steepest = from.steepest().max(to.steepest()).max(STEEPEST);
     let within = (steepest + STEEPEST) * width;
+    let mut ends = false;
     if let Some(Interval { low, high }) = sampler.handover(from, to) {
         let (before, after) = (sampler.near(low, within, from)?, sampler.near(high, within, to)?);
-        if before.topology == from.topology && after.topology == to.topology {
+        ends = before.turned(&after);
+        if before.topology == from.topology && after.topology == to.topology && !ends {
             divide(sampler, from, &before, breaks)?;
             breaks.push([before.clone(), after.clone()]);
             return divide(sampler, &after, to, breaks);
         }
     }
-    let middle = sampler.near(middle, within, from)?;
+    // Where a roll at which both wheels touch may end, followed places may be those of a roll that no search on its own finds.
+    let middle = if ends { sampler.at(middle, within)? } else { sampler.near(middle, within, from)? };
     divide(sampler, from, &middle, breaks)?;
     divide(sampler, &middle, to, breaks)
 }

@@ -48,6 +48,9 @@ pub struct ContactTable {
     coefficients: Vec<f64>,
 }
 
+/// Distance \[mm\] from a hop at which the values on both sides of it are looked up: beyond what it is known to.
+const BESIDE: f64 = 1e-6;
+
 /// Quantities that are computed together.
 const LANES: usize = 8;
 
@@ -111,6 +114,19 @@ impl ContactTable {
     /// Returns the quantities, in the order of the values of [`ContactTable::fill`].
     pub fn quantities(&self) -> &[TableQuantity] {
         &self.quantities
+    }
+
+    /// Lists where the roll jumps under a yaw \[rad\]: displacement \[mm\] and jump \[rad\], + where it grows. There ends the one roll at
+    /// which both wheels touch, and contact goes on at another one.
+    pub fn roll_jumps(&self, yaw: f64) -> Vec<[f64; 2]> {
+        let roll = |lateral: f64| {
+            let mut values = vec![f64::NAN; self.quantities.len()];
+            self.fill(lateral, yaw, &mut values);
+            values[0]
+        };
+        let jump = |lateral: f64| [lateral, roll(lateral + BESIDE) - roll(lateral - BESIDE)];
+        let jumps = self.places(Beginning::Hop, yaw).into_iter().map(jump);
+        jumps.filter(|[_, jump]| jump.abs() > self.quantities[0].tolerance).collect()
     }
 
     /// Returns the cells, in ascending order under one yaw.

@@ -8,7 +8,7 @@ use super::quantity::{MOST, QuantityValues, SideValues, values};
 use crate::error::Result;
 use crate::load::{curvatures_at, quadratic_form_at};
 use crate::numerics::interval::Interval;
-use crate::search::{Contact, LowestPlaces, Position, Selection, WheelsetOnTrack, WheelsetSearch};
+use crate::search::{Contact, LowestPlaces, Position, Roll, Selection, WheelsetOnTrack, WheelsetSearch};
 
 /// Distance \[mm\] below which two places are one.
 const APART: f64 = 1e-3;
@@ -60,9 +60,13 @@ pub(super) struct State {
     slopes: [f64; 2],
 }
 
-/// Slope of a place of contact from which on several rolls may have contact on both sides: searches nearby then begin anew. It is
-/// below the 73° of [`WheelsetSearch::touch`].
-const STEEP: f64 = 3.0;
+/// Rate at which the heights of both sides part with the roll, as a share of that of level treads, below which several rolls may have
+/// contact on both sides: searches nearby then begin anew. It falls to 0 where such a roll ends, as on flanges of 70 to 73°.
+const STEADY: f64 = 0.5;
+
+/// Jump of the roll \[rad\] across a break above which contact does not pass from one place to another of a wheelset that stands still: it
+/// lifts a wheel by less than the jump of a hop.
+const TURNED: f64 = 1e-8;
 
 /// Searches at one displacement after another, under one yaw.
 pub(super) struct Sampler<'a> {
@@ -90,7 +94,8 @@ impl<'a> Sampler<'a> {
     /// # Errors
     /// The errors of the search.
     pub fn near(&mut self, lateral: f64, within: f64, state: &State) -> Result<State> {
-        self.touch(lateral, within, state.lowest.as_ref().filter(|_| state.steepest() < STEEP))
+        let steady = |lowest: &&LowestPlaces| self.asked.roll != Roll::Solve || lowest.steadiness() > STEADY;
+        self.touch(lateral, within, state.lowest.as_ref().filter(steady))
     }
 
     /// Finds where contact passes from the places of one state to those of a later one, by following both, which takes no search.
@@ -199,6 +204,13 @@ impl State {
         };
         let inward = (other.lateral - self.lateral).signum();
         safe(self, inward) && safe(other, -inward)
+    }
+
+    /// Tells whether the wheelset has rolled over from another state at nearly the same displacement, so that one roll at which both wheels
+    /// touch has ended in between.
+    pub fn turned(&self, other: &Self) -> bool {
+        let both = self.lowest.as_ref().zip(other.lowest.as_ref());
+        both.is_some_and(|(own, other)| (own.roll() - other.roll()).abs() > TURNED)
     }
 
     /// Returns the largest distance of a place of contact from that of another state, along the profiles' abscissae \[mm\].

@@ -27,6 +27,7 @@ mod flood_fill;
 mod half_space;
 mod hard_cases;
 mod hard_scenes;
+mod holes;
 mod in_place;
 mod in_time;
 mod independent_check;

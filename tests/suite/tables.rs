@@ -1,10 +1,13 @@
 //! Contact tables against direct searches: no error above the stated one, and the same bits on any number of threads.
 
+use crate::campaign::scenes;
 use crate::common::repository;
 use rayon::ThreadPoolBuilder;
 use wheelrail::case::{Arrangement, Case, table};
 use wheelrail::export::table_wrp;
+use wheelrail::internal::Random;
 use wheelrail::load::{curvatures_at, quadratic_form_at};
+use wheelrail::profile::standards;
 use wheelrail::scene;
 use wheelrail::search::SideTouch;
 use wheelrail::table::{ContactTable, TableQuantity};
@@ -36,13 +39,13 @@ fn points() -> usize {
 const YAWS: [f64; 2] = [-0.02, 0.02];
 
 /// Random displacements over the range and yaws over theirs, by Knuth's generator.
-fn random(lateral: [f64; 2], yaw: [f64; 2]) -> Vec<[f64; 2]> {
+fn random(count: usize, lateral: [f64; 2], yaw: [f64; 2]) -> Vec<[f64; 2]> {
     let mut state = 36_u64;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    (0..points()).map(|_| [lateral, yaw].map(|[from, to]| from + (to - from) * next())).collect()
+    (0..count).map(|_| [lateral, yaw].map(|[from, to]| from + (to - from) * next())).collect()
 }
 
 fn case(profiles: &str, more: &str, sides: &str) -> Result<Case> {
@@ -88,6 +91,10 @@ fn found(quantity: &TableQuantity, roll: f64, sides: &[SideTouch<'_>; 2], modulu
 
 /// Compares a table with direct searches, each from an upright wheelset.
 fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
+    compare_at(points(), name, case, table)
+}
+
+fn compare_at(count: usize, name: &str, case: &Case, table: &ContactTable) -> Result<()> {
     let Arrangement::Wheelset { system, position } = &case.setup().arrangement else {
         panic!("{name}: no wheelset")
     };
@@ -95,7 +102,7 @@ fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
     let mut values = vec![0.0; quantities.len()];
     let mut shares = vec![0.0_f64; quantities.len()];
     let mut exist = 0;
-    for [lateral, yaw] in random(table.about().lateral.ends(), table.about().yaw.ends()) {
+    for [lateral, yaw] in random(count, table.about().lateral.ends(), table.about().yaw.ends()) {
         table.fill(lateral, yaw, &mut values);
         let at = Position { lateral, yaw, ..*position };
         let touch = search.touch(&at, &Selection { within: 0.0, apart: 0.0 })?;
@@ -123,12 +130,12 @@ fn compare(name: &str, case: &Case, table: &ContactTable) -> Result<()> {
     println!(
         "{name}: {} cells, {} points; at worst {:.2} of the stated error, of {} {}",
         table.cells().len(),
-        points(),
+        count,
         worst.1,
         quantities[worst.0].name,
         quantities[worst.0].side()
     );
-    assert!(2 * exist > points() * quantities.len(), "{name}: {exist} values");
+    assert!(2 * exist > count * quantities.len(), "{name}: {exist} values");
     Ok(())
 }
 
@@ -190,7 +197,7 @@ fn arrays_of_other_sizes_are_refused() -> Result<()> {
 #[test]
 fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
     let case = case(DRAWN, ", yaw = 0.002", "")?;
-    let places = random(RANGE, YAWS);
+    let places = random(points(), RANGE, YAWS);
     let [lateral, yaws] = [0, 1].map(|k| places.iter().map(|place| place[k]).collect::<Vec<f64>>());
     for yaw in [None, Some(Interval::new(0.0, 0.01))] {
         let on = |threads: usize| -> Result<(String, Vec<u64>)> {
@@ -215,5 +222,54 @@ fn any_number_of_threads_makes_and_reads_the_same_table() -> Result<()> {
         let one = on(1)?;
         assert!(on(2)? == one && on(5)? == one);
     }
+    Ok(())
+}
+
+/// A wheelset of built-in profiles, its left wheel smaller by so much \[mm\].
+fn unequal(rail: &str, wheel: &str, radius: f64, smaller: f64) -> Result<Case> {
+    let text = format!(
+        "rail = {{ profile = {rail:?}, rotate = \"1:40\" }}\nwheel = {{ profile = {wheel:?}, radius = {radius:?} }}\n\
+         track = {{ gauge = 1435.0 }}\npatch = {{ load = {LOAD:?} }}\n\
+         wheelset = {{ back_to_back = 1360.0, flange_back_x = -70.0 }}\n\
+         [left.wheel]\nprofile = {wheel:?}\nradius = {:?}\n",
+        radius - smaller
+    );
+    scene::resolve(&scene::parse(&text, false)?, std::path::Path::new("."), "unequal")
+}
+
+/// Where a flange is so steep that a roll at which both wheels touch ends, the table is that of searches, and is cut there: random pairs
+/// on their flanges, and the pair whose table had the other roll before the end.
+#[test]
+fn tables_are_cut_where_a_roll_ends() -> Result<()> {
+    let defect = repository("tests/defects/table-fold-of-roll.toml");
+    let end = scene::resolve(&scene::load(&defect)?, std::path::Path::new("."), "end")?;
+    for range in [[4.66, 4.69], [-4.69, -4.66], [4.0, 5.5]] {
+        let made = table(&end, range.into(), None, 1e-3, false)?;
+        compare_at(300, &format!("45E3 under EN15302-B, {range:?}"), &end, &made)?;
+        let jumps = made.roll_jumps(0.0);
+        assert!(jumps.iter().any(|[lateral, _]| (lateral.abs() - 4.6777).abs() < 1e-3), "{jumps:?}");
+    }
+    let mut random = Random::new(6518);
+    let rails: Vec<&str> = standards::rail_names().collect();
+    let wheels: Vec<&str> = standards::wheel_names().collect();
+    let (mut made, mut cut) = (0, 0);
+    while made < scenes() {
+        let (rail, wheel) = (*random.pick(&rails), *random.pick(&wheels));
+        let (radius, smaller) = (random.between(420.0, 560.0), random.between(0.0, 1.0));
+        let side = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        let from = side * random.between(3.0, 9.0);
+        let Ok(case) = unequal(rail, wheel, radius, smaller) else { continue };
+        let Ok(table) = table(&case, Interval::new(from - 0.2, from + 0.2), None, 1e-3, false) else {
+            continue;
+        };
+        if !table.off_rail_somewhere().is_empty() {
+            continue;
+        }
+        made += 1;
+        cut += usize::from(!table.roll_jumps(0.0).is_empty());
+        let name = format!("{rail} under {wheel}, {radius} mm, {smaller} mm smaller, from {from} mm");
+        compare_at(100, &name, &case, &table)?;
+    }
+    println!("{made} tables, {cut} cut where a roll ends");
     Ok(())
 }

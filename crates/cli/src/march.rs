@@ -9,7 +9,7 @@ use super::range::{range, range_in};
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
     ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, MarchStop, append_event,
-    cut_off_warning, events_head, march_head,
+    cut_off_warning, events_head, hole_warning, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
@@ -131,6 +131,8 @@ struct Marched {
     done: usize,
     /// Stops without contact.
     without: usize,
+    /// Stops over a hole of a list of slices.
+    holes: usize,
     /// Stops with a patch that the end of the slices cuts off.
     cut_off: usize,
     /// The rows of the stops that were taken last.
@@ -149,7 +151,7 @@ impl Marched {
         }
         let (rows, drawn, events) = Default::default();
         let stride = all.div_ceil(MOST_DRAWN).max(1);
-        Ok(Self { outputs, all, stride, done: 0, without: 0, cut_off: 0, rows, drawn, events })
+        Ok(Self { outputs, all, stride, done: 0, without: 0, holes: 0, cut_off: 0, rows, drawn, events })
     }
 
     /// Takes the next stops, and the events up to them. Returns whether more are wanted.
@@ -158,7 +160,9 @@ impl Marched {
         self.rows.clear();
         for stop in stops {
             self.rows.push(self.done, stop);
-            self.without += usize::from(stop.rows.is_empty());
+            let hole = stop.holes.contains(&true);
+            self.holes += usize::from(hole);
+            self.without += usize::from(stop.rows.is_empty() && !hole);
             self.cut_off += usize::from(stop.rows.iter().any(|row| row.cut_off));
             if self.outputs.draws() && self.done.is_multiple_of(self.stride) {
                 self.drawn.push(self.done / self.stride, stop);
@@ -193,7 +197,7 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     let mut marched = Marched::new(outputs, course, places.len())?;
     progress.at(format!("0 of {} places", places.len()));
     case.blocks(course, &places, |stops, events| marched.take(stops, events, &progress))?;
-    let Marched { mut outputs, stride, without, cut_off, drawn, events, .. } = marched;
+    let Marched { mut outputs, stride, without, holes, cut_off, drawn, events, .. } = marched;
     let shown: Vec<f64> = places.iter().copied().step_by(stride).collect();
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let number = counted(places.len(), "place");
@@ -206,7 +210,7 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     if without > 0 {
         complain(&format!("march: no contact at {}", counted(without, "place")));
     }
-    if let Some(warning) = cut_off_warning(cut_off) {
+    for warning in hole_warning(holes).into_iter().chain(cut_off_warning(cut_off)) {
         complain(&format!("march: {warning}"));
     }
     Ok(Outcome::Done)

@@ -94,5 +94,13 @@ fn remarks(table: &ContactTable) -> Vec<String> {
                 quantity.tolerance
             )
         });
-    missing.chain(over).collect()
+    let middle = table.about().yaw.at(0.5);
+    let ends = table.roll_jumps(middle).into_iter().map(|[lateral, jump]| {
+        format!(
+            "the roll jumps by {:.3} mrad at {lateral:.6} mm{under}: the one at which both wheels touch ends there, as on a steep flange, and \
+             they touch at another one beyond",
+            1e3 * jump
+        )
+    });
+    missing.chain(over).chain(ends).collect()
 }

@@ -8,6 +8,7 @@ use pyo3::types::{PyDict, PyList};
 use wheelrail::Error;
 use wheelrail::case::{
     ALONG, AROUND, EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, MarchStop, cut_off_warning, event_numbers,
+    hole_warning,
 };
 use wheelrail::scene;
 use wheelrail::search::Event;
@@ -77,10 +78,11 @@ pub(crate) fn march<'py>(
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
         let case = scene::march(&scene, folder)?;
         let (mut rows, mut events, mut done) = (MarchColumns::default(), Vec::new(), 0);
-        let mut cut_off = 0;
+        let (mut cut_off, mut holes) = (0, 0);
         case.blocks(course, &along, |stops: &[MarchStop], found: &[Event]| {
             for stop in stops {
                 rows.push(done, stop);
+                holes += usize::from(stop.holes.contains(&true));
                 cut_off += usize::from(stop.rows.iter().any(|row| row.cut_off));
                 done += 1;
             }
@@ -89,7 +91,7 @@ pub(crate) fn march<'py>(
             watch.go_on().map(|()| true)
         })?;
         let mut warnings = case.warnings;
-        warnings.extend(cut_off_warning(cut_off));
+        warnings.extend(hole_warning(holes).into_iter().chain(cut_off_warning(cut_off)));
         Ok((rows, events, warnings))
     })?;
     for warning in &warnings {

@@ -14,6 +14,7 @@ mod settle;
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::f64::consts::PI;
 use std::mem;
 use std::sync::Arc;
 
@@ -21,7 +22,7 @@ use super::body::SearchBody;
 use super::candidates::{Candidate, Meeting};
 use super::locus::Attitude;
 use super::over_rail::Work;
-use super::touch::{Contact, Pose, Selection, Touch, beside_its_rail};
+use super::touch::{Contact, Pose, Selection, Touch, beside_its_rail, over_hole};
 use crate::error::{Error, Result};
 use crate::lofted::{Loft, LoftStrip, LoftedBody, LoftedWheel, turned};
 use crate::numerics::interval::Interval;
@@ -136,7 +137,11 @@ impl LoftedPair {
         let attitude = pose.attitude(self.radius);
         let lowest = search.lower(&attitude, selection.within);
         search.answered()?;
-        let height = -lowest.ok_or_else(beside_its_rail)?.gap;
+        let lowest = lowest.ok_or_else(beside_its_rail)?;
+        if search.over_hole(&attitude, Some(&lowest.meeting)) {
+            return Err(over_hole("contact", "the wheel"));
+        }
+        let height = -lowest.gap;
         Ok((height, search.collect(&attitude, height, selection).contacts.to_vec()))
     }
 
@@ -195,6 +200,18 @@ impl LoftedPair {
         let expected = format!("slices over which rail and wheel touch at places, not all over the {other}");
         let advice = "look at the slices nearby, or lower `within`";
         Error::new(place, "a surface too close to the other one", expected, advice)
+    }
+
+    /// Lists where the list defines no surface: along a rail \[mm\], or as pitches at which such a part of a wheel lies lowest \[rad\],
+    /// of one turn.
+    pub(super) fn holes(&self) -> Vec<Interval> {
+        let holes = self.loft.holes.iter();
+        if self.varying == Side::Rail {
+            return holes.copied().collect();
+        }
+        let turned = |angle: f64| (angle - self.middle).abs() <= PI;
+        let pitches = holes.map(|hole| Interval::new(-hole.high / self.radius, -hole.low / self.radius));
+        pitches.filter(|pitch| turned(-pitch.high)).collect()
     }
 
     /// Tells whether it is the wheel that varies.
@@ -387,6 +404,22 @@ impl<'a> LoftedSearch<'a> {
         })
     }
 
+    /// Tells whether the list defines no surface where the wheel stands, or where it would touch at the place that [`Self::lower`] found
+    /// lowest: at the edge of such a hole.
+    pub fn over_hole(&self, attitude: &Attitude, lowest: Option<&Meeting>) -> bool {
+        let stands = match self.pair.varying {
+            Side::Rail => self.along + attitude.along,
+            Side::Wheel => self.along,
+        };
+        self.pair.loft.holes.iter().any(|hole| hole.low < stands && stands < hole.high)
+            || lowest.is_some_and(|lowest| self.at_hole(lowest.parameters))
+    }
+
+    /// Tells whether a place (u, y) lies at the edge of a hole.
+    fn at_hole(&self, [_, y]: [f64; 2]) -> bool {
+        self.pair.loft.holes.iter().any(|hole| hole.ends().contains(&y))
+    }
+
     /// Returns the place of least gap near a former one at another attitude; `None` if it is lost.
     pub fn follow(&mut self, attitude: &Attitude, meeting: &Meeting) -> Option<Candidate> {
         let over = self.pair.over(attitude);
@@ -396,12 +429,17 @@ impl<'a> LoftedSearch<'a> {
         Some(candidate(&over, &FoundPlace { strip, settled }))
     }
 
-    /// Collects the contacts of `selection` among the places that [`Self::lower`] left, at the height that it gave.
+    /// Collects the contacts of `selection` among the places that [`Self::lower`] left, at the height that it gave. At the edge of a hole
+    /// no gap is least: the surface goes on unseen.
     pub fn collect(&mut self, attitude: &Attitude, height: f64, selection: &Selection) -> Touch<'_> {
         let over = self.pair.over(attitude);
         self.found.sort_by(|a, b| a.settled.above.gap.total_cmp(&b.settled.above.gap));
         self.contacts.clear();
-        for found in self.found.iter().filter(|found| found.settled.above.gap + height <= selection.within) {
+        let within = |found: &&FoundPlace| found.settled.above.gap + height <= selection.within;
+        for found in self.found.iter().filter(within) {
+            if self.at_hole(found.settled.place) {
+                continue;
+            }
             let contact = contact(&over, found, self.along, height);
             let near = |c: &Contact| {
                 (c.rail_x - contact.rail_x).abs() <= selection.apart

@@ -192,3 +192,51 @@ fn bad_calls_name_the_key_and_leave_nothing() {
     let error = String::from_utf8(output.unwrap().stderr).unwrap();
     assert!(error.contains("along: found no `along` for 14 slices"), "{error}");
 }
+
+/// Between slices that show different parts there is no surface: table, picture and page say so, and there is no event.
+#[test]
+fn a_march_says_where_its_rail_has_a_hole() {
+    let folder = TempDir::new().unwrap();
+    let here = folder.path();
+    for (name, from) in [("whole.toml", -30.0), ("half.toml", 5.0)] {
+        let arc = format!("center = [0.0, -300.0], radius = 300.0, half = \"upper\", x = [{from:?}, 30.0]");
+        std::fs::write(here.join(name), format!("segments = [{{ arc = {{ {arc} }} }}]\n")).unwrap();
+    }
+    let slices = "0 1\n5\n0\n1\n0 'whole.toml'\n100 'whole.toml'\n150 'half.toml'\n200 'whole.toml'\n300 'whole.toml'\n";
+    std::fs::write(here.join("rail.slcs"), slices).unwrap();
+    let scene = "rail = { file = \"rail.slcs\" }\nwheel = { profile = \"S1002\", radius = 460.0 }\n\
+                 track = { spacing = 1500.0 }\nwheelset = { spacing = 1500.0 }\n";
+    std::fs::write(here.join("scene.toml"), scene).unwrap();
+    let arguments = [
+        "march",
+        "scene.toml",
+        "--along",
+        "25:275:25",
+        "--events",
+        "e.csv",
+        "--picture",
+        "p.svg",
+        "--html",
+        "p.html",
+    ];
+    let binary = env!("CARGO_BIN_EXE_wheelrail");
+    let output = Command::new(binary).current_dir(here).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let complaints = String::from_utf8(output.stderr).unwrap();
+    assert!(complaints.contains("march: a hole at 3 places"), "{complaints}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    let doubt = table.lines().next().unwrap().split(',').position(|name| name == "doubt").unwrap();
+    for row in &rows {
+        let along: f64 = row[0].parse().unwrap();
+        let hole = 100.0 < along && along < 200.0;
+        assert_eq!((row[doubt], row[5]), if hole { ("hole", "0") } else { ("", "1") }, "{row:?}");
+    }
+    assert_eq!(rows.len(), 22, "{table}");
+    assert_eq!(std::fs::read_to_string(here.join("e.csv")).unwrap().lines().count(), 1);
+    for file in ["p.svg", "p.html"] {
+        let text = std::fs::read_to_string(here.join(file)).unwrap();
+        assert!(text.contains("holes without a surface: 100.00 to 200.00"), "{file}");
+        assert!(!text.contains("section at"), "{file}");
+    }
+}
