@@ -127,11 +127,22 @@ pub struct Setup {
     /// Largest vertical gap \[mm\] of a near miss that is reported; usually 0.
     pub within: f64,
     /// Whether the roll of a wheelset, where it is solved, is that at which each wheel carries its load.
-    pub roll_by_load: bool,
+    pub roll_by_load: RollByLoad,
     /// Where the middle of the axle is along rails that vary, in the coordinate of their lists \[mm\]; 0 on others.
     pub along: f64,
     /// By how much wheels that vary are turned about their axle \[rad\]: what lies at −pitch is lowest; 0 of others.
     pub pitch: f64,
+}
+
+/// Whether the roll of a wheelset is that at which each wheel carries its load, not that of first touch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RollByLoad {
+    /// It is not.
+    No,
+    /// It is, as the axle has a load and no other roll is asked for; what knows first touch only, such as a table, has that.
+    Unasked,
+    /// It is asked for.
+    Asked,
 }
 
 /// The ways to place bodies.
@@ -202,8 +213,11 @@ impl ApproachBy {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum FrameOrigin {
-    /// The contact point C and the common tangent there.
+    /// Under a load [`Self::Weighted`] for a region of several places, if both bodies have one profile each and the wheel does not stand
+    /// with yaw on a roller; otherwise [`Self::Contact`].
     #[default]
+    Auto,
+    /// The contact point C and the common tangent there.
     Contact,
     /// The centre of the overlap and the mean angle of the rail's surface under it; the weight is the squared vertical overlap.
     Weighted,

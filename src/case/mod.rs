@@ -69,7 +69,7 @@ pub use found::{Found, ListedContact};
 pub use grids::Grid;
 pub use input::{
     ApproachBy, Arrangement, AskedAxes, AskedPressure, Case, Echo, FrameOrigin, Friction, Outputs, Profiles,
-    Question, Setup, SideProfiles,
+    Question, RollByLoad, Setup, SideProfiles,
 };
 pub use joined::joined_pair;
 pub use landmarks::{Landmarks, SideLandmarks};

@@ -35,6 +35,8 @@ pub(super) struct Overlap {
     nearest: Interval,
     /// Its frame on the rail, turned towards those of parts nearby.
     pub frame: WeightedFrame,
+    /// Nearness of the nearest other part: 1 where they join, 0 from [`TURNED_OVER`] beyond that.
+    pub near: f64,
 }
 
 /// Finds the parts of the overlap of a wheel that has sunk by `sunk` \[mm\], in order of ξ. `upright` has a vertical ζ, so that its s is
@@ -66,7 +68,9 @@ pub(super) fn overlaps(upright: &Placement, sunk: f64, rules: &RegionRules) -> V
             if k > 0 { middle(k - 1) } else { f64::NEG_INFINITY },
             if k + 1 < found.len() { middle(k) } else { f64::INFINITY },
         );
-        Overlap { extent: group.extent, nearest, frame: WeightedFrame { angle: turned(k), ..*frame } }
+        let beside = [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|pair| near.get(pair));
+        let near = beside.copied().fold(0.0, f64::max);
+        Overlap { extent: group.extent, nearest, frame: WeightedFrame { angle: turned(k), ..*frame }, near }
     };
     (0..found.len()).map(overlap).collect()
 }
@@ -84,6 +88,14 @@ fn nearness(upright: &Placement, [left, right]: [&GridGroup; 2], rules: &RegionR
 }
 
 impl Overlap {
+    /// Gives the frame where a part of one place keeps that place's own, with the abscissa and the angle of its tangent, until it is near
+    /// others, and turns to the centre of what they will be together; `None` where it is the place's own.
+    pub fn of_place(&self, [rail_x, angle]: [f64; 2]) -> Option<WeightedFrame> {
+        let between = |own: f64, joined: f64| own + self.near * (joined - own);
+        let (rail_x, angle) = (between(rail_x, self.frame.rail_x), between(angle, self.frame.angle));
+        (self.near > 0.0).then_some(WeightedFrame { rail_x, angle, ..self.frame })
+    }
+
     /// Tells whether a point of the rail at this ξ of the upright frame \[mm\] is in it.
     pub fn holds(&self, xi: f64) -> bool {
         self.extent.xi.contains(xi)

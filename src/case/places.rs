@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::contact::PlacedContact;
 use super::found::{Found, ListedContact};
-use super::input::{ApproachBy, Arrangement, Case, FrameOrigin};
+use super::input::{ApproachBy, Arrangement, Case, FrameOrigin, RollByLoad};
 use super::overlaps::RegionRules;
 use super::wheel::{ContactRegion, OnLoft, SinkingWheel, carry, placed_at};
 use crate::error::{Error, Result};
@@ -75,11 +75,12 @@ pub fn find(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedConta
     let start = Instant::now();
     let contact = match approach {
         None => PlacedContact::new(placement, None, modulus)?,
-        Some(ApproachBy::Given(approach)) if case.question.frame == FrameOrigin::Contact => {
+        Some(ApproachBy::Given(approach)) if case.question.frame != FrameOrigin::Weighted => {
             PlacedContact::new(placement, Some(approach), modulus)?
         }
         Some(by) => {
-            let mut wheel = SinkingWheel::at_points(&case.profiles.right.pair, placement, rules(case, true));
+            let mut wheel =
+                SinkingWheel::at_points(&case.profiles.right.pair, placement, rules(case, by, true));
             let [.., most] = SEARCHED_GAPS;
             let mut regions = match by {
                 ApproachBy::Given(approach) => wheel.regions(approach)?,
@@ -231,6 +232,12 @@ fn sunk(
     if found.is_err() {
         return Ok((sides, found));
     }
+    if case.setup.roll_by_load == RollByLoad::Unasked {
+        // That of first touch, then: a run says how the wheels share the load.
+        let sides = self::sides(case, within, None)?;
+        let found = regions(case, &sides, approach, most)?;
+        return Ok((sides, found));
+    }
     let (found, expected) = (
         "no roll that the loads settle at",
         "a roll at which both loads leave the axle one height: there is none where two places become one region",
@@ -241,7 +248,7 @@ fn sunk(
 /// Tells whether the roll of a case follows its loads.
 fn follows(case: &Case) -> bool {
     let solved = matches!(&case.setup.arrangement, Arrangement::Wheelset { position, .. } if position.roll == Roll::Solve);
-    solved && case.setup.roll_by_load
+    solved && case.setup.roll_by_load != RollByLoad::No
 }
 
 /// Lowers a wheel or a wheelset, and gives the places of contact with vertical gaps up to `within` \[mm\]. The right-hand
@@ -281,24 +288,24 @@ type Carried = std::result::Result<Vec<Vec<ContactRegion>>, Option<TrackSide>>;
 
 /// Finds the regions of every side under an approach; under a load a wheel is lowered by at most `most` \[mm\].
 fn regions(case: &Case, sides: &[TouchedSide], approach: Option<ApproachBy>, most: f64) -> Result<Carried> {
-    let rules = rules(case, false);
+    let Some(approach) = approach else { return Ok(Ok(vec![Vec::new(); sides.len()])) };
+    let rules = rules(case, approach, false);
     let wheel = |side: &TouchedSide| {
         SinkingWheel::over(&case.profiles.on(side.side).pair, on_loft(case, side.side), &side.places, rules)
     };
     let modulus = case.question.modulus();
     let mut all = Vec::new();
     match approach {
-        None => return Ok(Ok(vec![Vec::new(); sides.len()])),
-        Some(ApproachBy::Given(approach)) => {
+        ApproachBy::Given(approach) => {
             for side in sides {
                 all.push(wheel(side).regions(approach)?);
             }
         }
-        Some(ApproachBy::WheelLoad(load)) => {
+        ApproachBy::WheelLoad(load) => {
             let by = ApproachBy::WheelLoads { right: load, left: load };
             return regions(case, sides, Some(by), most);
         }
-        Some(ApproachBy::WheelLoads { right, left }) => {
+        ApproachBy::WheelLoads { right, left } => {
             let carried = |side: &TouchedSide| {
                 let load = if side.side == Some(TrackSide::Left) { left } else { right };
                 carry(&mut [wheel(side)], load, modulus, most)
@@ -309,7 +316,7 @@ fn regions(case: &Case, sides: &[TouchedSide], approach: Option<ApproachBy>, mos
                 all.extend(carried);
             }
         }
-        Some(ApproachBy::AxleLoad(load)) => {
+        ApproachBy::AxleLoad(load) => {
             let mut wheels: Vec<_> = sides.iter().map(wheel).collect();
             let Some(carried) = carry(&mut wheels, load, modulus, most)? else { return Ok(Err(None)) };
             all = carried;
@@ -331,8 +338,12 @@ fn on_loft(case: &Case, side: Option<TrackSide>) -> Option<OnLoft<'_>> {
     Some(OnLoft { body, from })
 }
 
-fn rules(case: &Case, alone: bool) -> RegionRules {
-    let frame = case.question.frame;
+/// Gives the rules of regions under an approach or a load.
+fn rules(case: &Case, approach: ApproachBy, alone: bool) -> RegionRules {
+    let frame = match (case.question.frame, approach) {
+        (FrameOrigin::Auto, ApproachBy::Given(_)) => FrameOrigin::Contact,
+        (frame, _) => frame,
+    };
     RegionRules { merge: case.axes.merge, spacing: case.axes.spacing, alone, frame }
 }
 

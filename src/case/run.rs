@@ -7,7 +7,7 @@ use super::conformal::turning_warning;
 use super::doubts::Doubt;
 use super::found::Found;
 use super::grids::check_memory;
-use super::input::{Arrangement, Case};
+use super::input::{ApproachBy, Arrangement, Case};
 use super::landmarks::SideLandmarks;
 use super::pressure::PartPressure;
 use super::site::{Site, sites};
@@ -27,6 +27,9 @@ pub(super) const COMPUTING: f64 = 0.5;
 
 /// Tells nobody.
 pub const SILENT: Tell<'static> = &|_, _| {};
+
+/// Share of an axle's load by which the loads of its wheels may differ without a word: more than forces err by.
+const UNEQUAL: f64 = 0.01;
 
 /// A case and everything computed from it.
 #[derive(Debug, Clone)]
@@ -120,12 +123,31 @@ impl Run {
         let first = self.parts.first();
         let placing = first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site));
         out.extend(placing.map(|doubt| doubt.to_string()));
+        out.extend(self.shares_warning());
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
             out.extend(part.warnings.iter().map(|warning| format!("{place}{warning}")));
         }
         out
+    }
+
+    /// Says that the wheels of an axle carry unequal parts of its load, as they do under a roll that is not that of the load; `None` of
+    /// other loads, and where they differ by less than forces err.
+    fn shares_warning(&self) -> Option<String> {
+        let Some(ApproachBy::AxleLoad(load)) = self.case.question.approach else { return None };
+        let [left, right] = [TrackSide::Left, TrackSide::Right].map(|side| {
+            let own = self.parts.iter().map(|part| &part.site).filter(|site| site.side() == Some(side));
+            own.filter_map(Site::vertical_load).sum::<f64>()
+        });
+        ((right - left).abs() > UNEQUAL * load).then(|| {
+            format!(
+                "the left wheel carries {:.2} kN and the right one {:.2} kN of the axle's load: the roll is the scene's or that of first \
+                 touch; with roll = \"load\" the axle rolls until each carries half",
+                left / 1e3,
+                right / 1e3
+            )
+        })
     }
 
     /// Finds the creepages of a part, in its contact frame and, on a left side, in the axes of its mirror image; `None` for

@@ -1,6 +1,6 @@
 //! The contact table of a case.
 
-use super::input::{ApproachBy, Arrangement, Case};
+use super::input::{ApproachBy, Arrangement, Case, RollByLoad};
 use crate::error::{Error, Result};
 use crate::export::{table_csv, table_nc, table_wrp};
 use crate::files::{Folder, Names};
@@ -32,7 +32,7 @@ pub fn table(
         return Err(Error::new("table", "a single wheel", expected, "a table is of a wheelset on its track"));
     };
     case.profiles().swept("take `wheelrail march`")?;
-    if case.setup.roll_by_load {
+    if case.setup.roll_by_load == RollByLoad::Asked {
         let expected = "\"solve\", \"neglect\" or an angle in rad";
         let advice = "a table is of wheels at first touch: change it";
         return Err(Error::new("wheelset: roll", "\"load\"", expected, advice));

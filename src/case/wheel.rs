@@ -110,7 +110,7 @@ impl ContactRegion {
         Self { place, merged, placement, approach, patch, extents, loads, pressures }
     }
 
-    /// Finds the region of a part of the overlap in the part's frame, where its place has closed by `closed` \[mm\] along the vertical;
+    /// Finds the region of a part of the overlap in a frame, where its place has closed by `closed` \[mm\] along the vertical;
     /// `touching` is the pair placed there.
     ///
     /// # Errors
@@ -118,10 +118,10 @@ impl ContactRegion {
     fn over(
         (place, touching): (usize, &Placement),
         (upright, overlap): (&Placement, &Overlap),
-        closed: f64,
+        (frame, closed): (WeightedFrame, f64),
         rules: &RegionRules,
     ) -> Result<Self> {
-        let WeightedFrame { rail_x, angle, .. } = overlap.frame;
+        let WeightedFrame { rail_x, angle, .. } = frame;
         let placement = Arc::new(touching.reframed(rail_x, angle)?);
         let approach = closed * placement.upright();
         let patch = overlap.patch(upright, &placement, approach, rules.alone);
@@ -194,7 +194,12 @@ impl<'a> SinkingWheel<'a> {
     /// A place at which the pair cannot be placed; in weighted frames also a wheel with yaw over a roller, and a body that varies.
     pub(super) fn regions(&mut self, first_approach: f64) -> Result<Vec<ContactRegion>> {
         let sunk = self.places.first().map_or(0.0, |first| first_approach / first.cos);
-        if self.rules.frame == FrameOrigin::Weighted {
+        let centred = match self.rules.frame {
+            FrameOrigin::Weighted => true,
+            FrameOrigin::Auto => self.several(sunk)?,
+            FrameOrigin::Contact => false,
+        };
+        if centred {
             let regions = self.weighted(sunk)?;
             if regions.first().is_some_and(|first| first.place == 0) {
                 return Ok(regions);
@@ -228,28 +233,52 @@ impl<'a> SinkingWheel<'a> {
             None => upright(&*self.placement(0)?)?,
         };
         let parts = overlaps(&upright, sunk, &self.rules);
-        let mut taken: Vec<Option<usize>> = vec![None; parts.len()];
-        let mut regions: Vec<ContactRegion> = Vec::new();
-        for index in 0..self.places.len() {
-            let closed = sunk - self.places[index].gap;
-            let xi = upright.rail().contact_frame().inverse_transform_point(&self.places[index].rail).x;
+        // The places of each part, which has closed there, in the order in which they touch.
+        let mut taken: Vec<(usize, Vec<usize>)> = Vec::new();
+        for (index, place) in self.places.iter().enumerate() {
+            let xi = upright.rail().contact_frame().inverse_transform_point(&place.rail).x;
             let held = |part: &Overlap| part.holds(xi) || self.rules.alone;
-            let Some(k) = parts.iter().position(held).filter(|_| closed > 0.0) else { continue };
-            if let Some(region) = taken[k] {
-                regions[region].merged.push(index);
-                continue;
+            let Some(k) = parts.iter().position(held).filter(|_| place.gap < sunk) else { continue };
+            match taken.iter_mut().find(|(part, _)| *part == k) {
+                Some((_, own)) => own.push(index),
+                None => taken.push((k, vec![index])),
             }
-            taken[k] = Some(regions.len());
-            let touching = self.placement(index)?;
-            regions.push(ContactRegion::over(
-                (index, &touching),
-                (&upright, &parts[k]),
-                closed,
-                &self.rules,
-            )?);
+        }
+        let mut regions = Vec::new();
+        for (part, own) in taken {
+            let (index, part) = (own[0], &parts[part]);
+            let (touching, closed) = (self.placement(index)?, sunk - self.places[index].gap);
+            let Station { x, .. } = touching.rail().point.station;
+            let frame = match self.rules.frame {
+                FrameOrigin::Auto if own.len() == 1 => part.of_place([x, touching.rail().contact_angle()]),
+                _ => Some(part.frame),
+            };
+            let mut region = match frame {
+                None => ContactRegion::new(index, touching, closed * self.places[index].cos, &self.rules),
+                Some(frame) => {
+                    let in_part = (&upright, part);
+                    ContactRegion::over((index, &touching), in_part, (frame, closed), &self.rules)?
+                }
+            };
+            region.merged.extend(&own[1..]);
+            regions.push(region);
         }
         self.upright = Some(upright);
         Ok(regions)
+    }
+
+    /// Tells whether several places have closed under a sinking \[mm\], and the bodies may be seen from another frame than theirs.
+    ///
+    /// # Errors
+    /// A place at which the pair cannot be placed.
+    fn several(&mut self, sunk: f64) -> Result<bool> {
+        if self.places.iter().filter(|place| place.gap < sunk).count() < 2 {
+            return Ok(false);
+        }
+        if self.upright.is_none() {
+            self.upright = upright(&*self.placement(0)?).ok();
+        }
+        Ok(self.upright.is_some())
     }
 
     fn placement(&mut self, index: usize) -> Result<Arc<Placement>> {

@@ -119,13 +119,11 @@ impl Scene {
     /// position asks for a solved roll.
     #[must_use]
     pub fn at(&self, position: &Position) -> Self {
-        let roll = match position.roll {
-            Roll::Solve => RollData::Word(match self.wheelset.as_ref().map(|wheelset| wheelset.roll) {
-                Some(RollData::Word(RollWord::Load)) => RollWord::Load,
-                _ => RollWord::Solve,
-            }),
-            Roll::Neglect => RollData::Word(RollWord::Neglect),
-            Roll::Fixed(angle) => RollData::Radians(angle),
+        let roll = match (position.roll, self.wheelset.as_ref().and_then(|wheelset| wheelset.roll)) {
+            (Roll::Solve, own @ (None | Some(RollData::Word(RollWord::Load)))) => own,
+            (Roll::Solve, _) => Some(RollData::Word(RollWord::Solve)),
+            (Roll::Neglect, _) => Some(RollData::Word(RollWord::Neglect)),
+            (Roll::Fixed(angle), _) => Some(RollData::Radians(angle)),
         };
         let (lateral, yaw) = (position.lateral, position.yaw);
         let moved = |wheelset: &WheelsetData| WheelsetData { lateral, yaw, roll, ..wheelset.clone() };
@@ -213,14 +211,14 @@ pub struct WheelsetData {
     #[serde(default)]
     pub yaw: f64,
     /// Roll: "solve" (both wheels touch), "load" (each wheel carries its load), "neglect" (0), or rad about the track's y axis;
-    /// a positive roll lowers the right-hand wheel.
-    #[serde(default)]
-    pub roll: RollData,
+    /// a positive roll lowers the right-hand wheel. If not given, "load" beside the axle's `load`, otherwise "solve".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<RollData>,
     /// Pitch about the axle, rad: how far wheels that vary have turned, + forward at the bottom, so that what lies at −pitch is lowest.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub pitch: f64,
-    /// Vertical load of the axle, N, instead of an approach or load in `[patch]`: both wheels sink by the same distance, or each carries
-    /// half with `roll = "load"`; δ is an estimate.
+    /// Vertical load of the axle, N, instead of an approach or load in `[patch]`: the axle rolls until each wheel carries half; with
+    /// another `roll` than "load" both wheels sink by the same distance. δ is an estimate.
     #[schemars(extend("exclusiveMinimum" = 0))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
@@ -288,14 +286,15 @@ pub struct PatchData {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_cell: Option<f64>,
     /// Origin and angle of the contact frame: "contact", the contact point and its tangent, or "weighted", the centre of
-    /// the overlap and the mean angle of the rail there, as in CONTACT; forces under a load are then continuous.
-    #[serde(default, skip_serializing_if = "is_contact")]
+    /// the overlap and the mean angle of the rail there, as in CONTACT; forces under a load are then continuous. "auto", as if not
+    /// given: "weighted" for a region of several places under a load, otherwise "contact".
+    #[serde(default, skip_serializing_if = "is_auto")]
     pub frame: FrameOrigin,
 }
 
 /// Tells whether the frame is the usual one, which a scene need not name.
-fn is_contact(frame: &FrameOrigin) -> bool {
-    *frame == FrameOrigin::Contact
+fn is_auto(frame: &FrameOrigin) -> bool {
+    *frame == FrameOrigin::Auto
 }
 
 /// Elastic constants of both bodies; steel if not given.

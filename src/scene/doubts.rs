@@ -64,7 +64,7 @@ fn angles(scene: &Scene, out: &mut Vec<Doubt>) {
         ("contact: yaw", contact.and_then(|contact| contact.yaw)),
         ("contact: roll", contact.and_then(|contact| contact.roll)),
         ("wheelset: yaw", wheelset.map(|wheelset| wheelset.yaw)),
-        ("wheelset: roll", wheelset.and_then(|wheelset| rolled(wheelset.roll))),
+        ("wheelset: roll", wheelset.and_then(|wheelset| rolled(wheelset.roll?))),
         ("left: deviation: roll", deviation(&scene.left)),
         ("right: deviation: roll", deviation(&scene.right)),
     ];

@@ -6,7 +6,7 @@ use nalgebra::UnitComplex;
 
 use super::data::{ContactData, RollData, RollWord, Scene, TrackData, WheelsetData};
 use super::side_data::{DeviationData, SideData};
-use crate::case::{Arrangement, Profiles, Setup, SideProfiles};
+use crate::case::{Arrangement, Profiles, RollByLoad, Setup, SideProfiles};
 use crate::error::{Error, Result, finite, given};
 use crate::lofted::LoftedBody;
 use crate::measured::Unit;
@@ -84,12 +84,16 @@ fn on_track(
         let left = own(left, off_left, "left", -1.0)?;
         WheelsetOnTrack::of_sides(left, own(&mut profiles.right, off_right, "right", 1.0)?)
     };
-    let roll_by_load = wheelset.roll == RollData::Word(RollWord::Load);
+    let roll_by_load = match wheelset.roll {
+        Some(RollData::Word(RollWord::Load)) => RollByLoad::Asked,
+        None if wheelset.load.is_some() => RollByLoad::Unasked,
+        _ => RollByLoad::No,
+    };
     let of_side = |side: &Option<SideData>| side.as_ref().is_some_and(|side| side.load.is_some());
     let loaded = wheelset.load.is_some()
         || scene.patch.as_ref().is_some_and(|patch| patch.load.is_some())
         || of_side(&scene.left);
-    if roll_by_load && !loaded {
+    if roll_by_load == RollByLoad::Asked && !loaded {
         let expected = "\"load\" with a load in [wheelset], [patch], or [left] and [right]";
         return Err(Error::new(
             "wheelset: roll",
@@ -112,7 +116,7 @@ pub(super) fn position(wheelset: &WheelsetData) -> Result<Position> {
     Ok(Position {
         lateral: finite("wheelset: lateral", wheelset.lateral)?,
         yaw: finite("wheelset: yaw", wheelset.yaw)?,
-        roll: roll(wheelset.roll)?,
+        roll: roll(wheelset.roll.unwrap_or_default())?,
     })
 }
 
@@ -197,7 +201,7 @@ fn single(contact: &ContactData, profiles: &SideProfiles, [along, pitch]: [Optio
     Ok(Setup {
         arrangement,
         within,
-        roll_by_load: false,
+        roll_by_load: RollByLoad::No,
         along: along.unwrap_or(0.0),
         pitch: pitch.unwrap_or(0.0),
     })

@@ -1,9 +1,11 @@
 //! What contacts carry adds up to what wheels and axles are loaded with.
 
+use crate::campaign::scenes;
 use crate::common::repository;
 use std::path::Path;
 
 use wheelrail::case::{Run, SILENT, Site, sites};
+use wheelrail::internal::Random;
 use wheelrail::load::{Cells, Elastic, HalfSpace, Pressures, effective_modulus, on_wider_cells, press_alone};
 use wheelrail::nalgebra::Point2;
 use wheelrail::profile::standards;
@@ -55,7 +57,7 @@ fn the_contacts_of_every_wheel_carry_its_load() -> Result<()> {
 #[test]
 fn both_wheels_of_an_axle_sink_alike_and_carry_its_load_together() -> Result<()> {
     for lateral in [0.0, 2.0, 5.0] {
-        let sites = found(&wheelset(lateral, "load = 120000.0\n"))?;
+        let sites = found(&wheelset(lateral, "roll = \"solve\"\nload = 120000.0\n"))?;
         let total = sum(&sites, Some(TrackSide::Left)) + sum(&sites, Some(TrackSide::Right));
         assert!((total / 120e3 - 1.0).abs() < SUM, "{lateral}: {total}");
         let sunk = [TrackSide::Left, TrackSide::Right].map(|side| {
@@ -337,5 +339,112 @@ fn contacts_have_the_pressures_of_their_loads() -> Result<()> {
         }
     }
     assert!(alone >= 3, "{alone}");
+    Ok(())
+}
+
+/// Forces are continuous where the place that touches first changes within one region: random pairs, and the one that jumped by 9.6 %
+/// in the frame of the contact.
+#[test]
+fn forces_of_a_region_of_several_places_do_not_jump() -> Result<()> {
+    let mut random = Random::new(6516);
+    let rails: Vec<&str> = standards::rail_names().collect();
+    let wheels: Vec<&str> = standards::wheel_names().collect();
+    let mut pairs = vec![("50E6", "EN15302-H", "1:20")];
+    let (mut swaps, mut most) = (0, 0.0_f64);
+    while swaps < 1 + scenes() / 5 {
+        let (rail, wheel, inclination) = pairs.pop().unwrap_or_else(|| {
+            (*random.pick(&rails), *random.pick(&wheels), *random.pick(&["1:20", "1:40"]))
+        });
+        let text = |lateral: f64, rest: &str| {
+            format!(
+                "[rail]\nprofile = \"{rail}\"\nrotate = \"{inclination}\"\n[wheel]\nprofile = \"{wheel}\"\nradius = 460.0\n\
+                 [contact]\noffset = {lateral:?}\n{rest}"
+            )
+        };
+        // The abscissa on the rail of the place that touches first.
+        let first = |lateral: f64| {
+            let case = scene::resolve(&scene::parse(&text(lateral, ""), false)?, Path::new("."), "swap")?;
+            let found = wheelrail::case::contacts(&case)?;
+            Ok::<f64, wheelrail::Error>(found[0].1.rail().point().station.x)
+        };
+        let mut steps: Vec<(f64, f64)> = Vec::new();
+        for step in -40..=40 {
+            let lateral = -(0.2 * f64::from(step) + 0.013);
+            if let Ok(x) = first(lateral) {
+                steps.push((lateral, x));
+            }
+        }
+        for pair in steps.windows(2) {
+            let [mut a, mut b] = [pair[0], pair[1]];
+            if (a.1 - b.1).abs() < 2.0 {
+                continue;
+            }
+            while (a.0 - b.0).abs() > 1e-6 {
+                let middle = 0.5 * (a.0 + b.0);
+                let x = first(middle)?;
+                *(if (x - a.1).abs() < (x - b.1).abs() { &mut a } else { &mut b }) = (middle, x);
+            }
+            if (a.1 - b.1).abs() < 2.0 {
+                continue;
+            }
+            let load = "[patch]\nload = 60000.0\n";
+            let [before, after] = [found(&text(a.0, load))?, found(&text(b.0, load))?];
+            let merged = |sites: &[Site]| {
+                sites.len() == 1 && !sites[0].contact.found.as_ref().unwrap().merged.is_empty()
+            };
+            if !merged(&before) || !merged(&after) {
+                continue;
+            }
+            swaps += 1;
+            let jump = before[0].normal_load.unwrap() / after[0].normal_load.unwrap() - 1.0;
+            most = most.max(jump.abs());
+            assert!(jump.abs() < 2e-3, "{rail} {inclination} under {wheel} at {}: {jump}", a.0);
+        }
+    }
+    println!("{swaps} changes of the first place within a region: forces jump by {most:.1e} at most");
+    Ok(())
+}
+
+/// An axle's load alone: each wheel carries half of it wherever the wheelset stands, and the axle is as high over one rail as over the other.
+/// The load acts in the middle, and its moment about the axle's middle is that of equal forces on both rails.
+#[test]
+fn an_axle_s_load_is_halved_wherever_it_stands() -> Result<()> {
+    let mut random = Random::new(6517);
+    let names = [
+        ("60E1", "S1002", "1:40"),
+        ("60E2", "EN13715-1:40-h28-e32.5", "1:40"),
+        ("54E3", "EN15302-C", "1:20"),
+    ];
+    for number in 0..scenes().div_ceil(4) {
+        let (rail, wheel, inclination) = *random.pick(&names);
+        let lateral = random.between(-6.5, 6.5);
+        let text = format!(
+            "[rail]\nprofile = \"{rail}\"\nrotate = \"{inclination}\"\n[wheel]\nprofile = \"{wheel}\"\nradius = 460.0\n\
+             [track]\ngauge = 1435.0\n[wheelset]\nback_to_back = 1360.0\nflange_back_x = -70.0\nlateral = {lateral:?}\n\
+             load = 100000.0\n"
+        );
+        let sites = found(&text).map_err(|error| error.within(format!("{number}: {text}")))?;
+        let heights = [TrackSide::Left, TrackSide::Right].map(|side| {
+            let total = sum(&sites, Some(side));
+            assert!((total / 50e3 - 1.0).abs() < SUM, "{number}: {text}{side}: {total}");
+            let first = sites.iter().find(|site| site.side() == Some(side)).unwrap();
+            first.contact.found.as_ref().unwrap().height_mm
+                - first.approach() / first.contact.placement.upright()
+        });
+        assert!((heights[0] - heights[1]).abs() < 1e-8, "{number}: {text}: {heights:?}");
+    }
+    Ok(())
+}
+
+/// Another roll that is asked for stays, and a run says how the wheels then share the load.
+#[test]
+fn a_roll_that_is_asked_for_stays_and_unequal_shares_are_told() -> Result<()> {
+    let run = |roll: &str| {
+        let text = wheelset(6.0, &format!("{roll}load = 100000.0\n"));
+        Run::new(scene::resolve(&scene::parse(&text, false)?, Path::new("."), "shares")?, SILENT)
+    };
+    let told = |run: &Run| run.warnings().iter().any(|warning| warning.contains("the left wheel carries"));
+    let (usual, first_touch) = (run("")?, run("roll = \"solve\"\n")?);
+    assert!(!told(&usual) && told(&first_touch), "{:?} {:?}", usual.warnings(), first_touch.warnings());
     Ok(())
 }

@@ -130,7 +130,8 @@ pub fn costs(seconds: f64) -> Result<Vec<LoadCost>> {
 impl Loaded {
     /// Resolves the case of this position over a pair.
     pub(super) fn case(&self, pair: &Pair) -> Result<Case> {
-        self.under(pair, &format!("load = {:?}", self.load))
+        // Tamaas solves in the frame of the place that touches first.
+        self.under(pair, &format!("load = {:?}\nframe = \"contact\"", self.load))
     }
 
     /// Resolves the case of this position; `patch` is the text of the scene's `[patch]`.
