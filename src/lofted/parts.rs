@@ -191,7 +191,8 @@ fn difference(marks: [&[Mark]; 2], common: Common) -> Option<String> {
 }
 
 /// Returns the arc length \[mm\] at which the first of two slices has the end of the second one, if from there on it shows more of the
-/// same flank: what goes down by more than it goes sideways. Heights count from the top of each slice, so that a rail may rise.
+/// same flank: what is steeper than 45° there, and goes down by more than it goes sideways. Heights count from the top of each slice, so
+/// that a rail may rise.
 fn deeper([marks, other]: [&[Mark]; 2], high: bool) -> Option<f64> {
     let top = |marks: &[Mark]| marks.iter().map(|mark| mark.station.z).fold(f64::NEG_INFINITY, f64::max);
     let end = if high { other.last()? } else { other.first()? }.station;
@@ -202,7 +203,8 @@ fn deeper([marks, other]: [&[Mark]; 2], high: bool) -> Option<f64> {
     let (top, bottom) = if high { (extra.first()?, extra.last()?) } else { (extra.last()?, extra.first()?) };
     let down = top.station.z - bottom.station.z;
     let below = extra.iter().all(|mark| mark.station.z <= top.station.z + NOISE);
-    let goes_on = below && down > (top.station.x - bottom.station.x).abs();
+    let steep = top.station.sin.abs() > top.station.cos.abs();
+    let goes_on = steep && below && down > (top.station.x - bottom.station.x).abs();
     let s = beside(marks, [x, z], foot)?.s;
     (goes_on && (s - bottom.s).abs() > SPACING).then_some(s)
 }

@@ -126,11 +126,8 @@ fn a_march_stops_at_holes_and_goes_on_over_flanks_seen_deeper() -> Result<()> {
         // With near misses up to half a millimetre, the edges of a hole beyond would be second places.
         assert!(events.is_empty(), "list {number}: {events:?}");
         for stop in &stops {
-            let touched = Interval::between(stop.along, stop.along + ahead);
-            let hole = list.holes.iter().any(|hole| {
-                (hole.low < stop.along && stop.along < hole.high)
-                    || (touched.high > hole.low && touched.low < hole.high)
-            });
+            let missing = |at: f64| list.holes.iter().any(|hole| hole.low < at && at < hole.high);
+            let hole = missing(stop.along) || missing(stop.along + ahead);
             let place = format!("list {number} at {}: {:?}", stop.along, list.holes);
             assert_eq!(stop.holes, [hole; 2], "{place}");
             assert_eq!(stop.rows.len(), if hole { 0 } else { 2 }, "{place}");
