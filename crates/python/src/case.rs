@@ -16,7 +16,7 @@ use wheelrail_check::check_site;
 use crate::contact::Contact;
 use crate::errors::{OrRaise, exception, say, warn};
 use crate::files::files;
-use crate::long::{waited, watched};
+use crate::long::waited;
 use crate::place::PairContact;
 use crate::positions::positions;
 use crate::profile::Profile;
@@ -133,8 +133,8 @@ impl Case {
     /// Raises GeometryError for a wheel that touches nothing; InputError for a load that no approach carries.
     #[getter]
     fn contacts(slf: &Bound<'_, Self>) -> PyResult<Vec<Contact>> {
-        let case = &slf.get().inner.case;
-        let found = watched(slf.py(), None, |_| case::find(case, case.question().approach))?;
+        let case = slf.get().shared();
+        let found = waited(slf.py(), move |_| case::find(&case, case.question().approach))?;
         let spot = |(k, contact)| PairContact::of_case(slf.clone().into_any().unbind(), k, contact);
         Ok(found.into_iter().enumerate().map(spot).map(Contact::of).collect())
     }
@@ -194,6 +194,7 @@ impl Case {
         let case = &self.inner.case;
         let (system, position) = self.wheelset()?;
         let own = own_angles(py, position)?;
+        let landmarks = Arc::new(case.landmarks().clone());
         let positions = positions(lateral, yaw.or(Some(&own[0])), roll.or(Some(&own[1])))?;
         let question = case.question();
         let asked = AskedOfSweep {
@@ -205,7 +206,7 @@ impl Case {
         let left = profiles.left.as_ref().map(|left| &left.pair);
         let right = &profiles.right.pair;
         let radii = [left.unwrap_or(right), right].map(wheelrail::Pair::wheel_radius);
-        sweep(py, (system, case.landmarks(), radii), positions, asked, progress.as_ref())
+        sweep(py, (Arc::clone(system), landmarks, radii), positions, asked, progress.as_ref())
     }
 
     /// Compare every contact with triangle meshes that parry3d measures, as `wheelrail check` does.
@@ -336,7 +337,7 @@ impl Case {
     }
 
     /// Gives the wheelset of a case and its position.
-    fn wheelset(&self) -> PyResult<(&WheelsetOnTrack, &Position)> {
+    fn wheelset(&self) -> PyResult<(&Arc<WheelsetOnTrack>, &Position)> {
         let case::Arrangement::Wheelset { system, position } = &self.inner.case.setup().arrangement else {
             let expected = "[track] and [wheelset]";
             let error =

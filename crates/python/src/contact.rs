@@ -16,7 +16,7 @@ use crate::arrays::{array, checked_shape, grid, values};
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, warn};
 use crate::filling::{checked_axes, fill, named_method};
-use crate::long::detached;
+use crate::long::{detached, shared};
 use crate::patch::Patch;
 use crate::place::{ContactOrigin, FoundAt, PairContact, joined};
 use crate::profile::Profile;
@@ -228,7 +228,7 @@ impl Contact {
         let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
-        detached(py, || {
+        shared(py, || {
             fill_normal_gap(&NormalGap::new(placement), &sigma, &EtaAxis::new(&eta), tolerance, out)
         })?;
         drop(values);

@@ -8,7 +8,7 @@ use wheelrail::{Error, Placement};
 
 use crate::arrays::values;
 use crate::errors::{OrRaise, exception};
-use crate::long::detached;
+use crate::long::shared;
 
 /// Reads the axes of a grid \[mm\], and checks them and the tolerance.
 pub(crate) fn checked_axes(
@@ -38,11 +38,11 @@ pub(crate) fn fill(
     const PART: usize = 1 << 20;
     let strips = plan.choice.method < Method::Pointwise && placement.skew() == 0.0;
     if strips || out.len() <= PART {
-        return detached(py, || plan.fill(placement, xi, axis, out));
+        return shared(py, || plan.fill(placement, xi, axis, out));
     }
     let columns = (PART / axis.eta().len()).next_multiple_of(MANY);
     for (xi, out) in xi.chunks(columns).zip(out.chunks_mut(columns * axis.eta().len())) {
-        detached(py, || plan.fill(placement, xi, axis, out))?;
+        shared(py, || plan.fill(placement, xi, axis, out))?;
         py.check_signals()?;
     }
     Ok(())

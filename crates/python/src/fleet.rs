@@ -44,10 +44,11 @@ pub(crate) fn fleet<'py>(
     out: PathBuf,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let warnings = watched(py, progress.as_ref().map(|shown| (shown, "pairs")), |watch| {
+    let folder = out.clone();
+    let warnings = watched(py, progress.as_ref().map(|shown| (shown, "pairs")), move |watch| {
         let fleet = listed(&path, &wheels, rails.as_deref())?;
         watch.at(0, fleet.pairs());
-        fleet.run(&out, &|done, all| {
+        fleet.run(&folder, &|done, all| {
             watch.at(done, all);
             watch.go_on()
         })?;

@@ -55,7 +55,7 @@ mod _wheelrail {
     #[pymodule_export]
     use super::sweep::{doubt_words, sweep_picture};
     #[pymodule_export]
-    use super::table::{ContactTable, table};
+    use super::table::{ContactTable, table, table_from_text};
     #[pymodule_export]
     use super::wheelset::Wheelset;
     use pyo3::prelude::*;

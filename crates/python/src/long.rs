@@ -2,17 +2,19 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use wheelrail::{Error, Result};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use wheelrail::{Error, ErrorKind, Result};
 
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, exception};
 
 /// Time between two checks for Ctrl-C and calls of `progress`: a quarter of the 0.2 s in which Ctrl-C ends the work.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -69,12 +71,46 @@ impl Watch {
     }
 }
 
-/// Does work without the GIL.
+/// Does work of one thread without the GIL.
 ///
 /// # Errors
 /// A RuntimeError for a fault of the library, which ends the work and not the process.
 pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| fault(panic.as_ref()))
+}
+
+/// Does work that the library shares among threads without the GIL.
+///
+/// # Errors
+/// Those of [`detached`]; a LimitError where the system grants no threads.
+pub(crate) fn shared<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let pool = threads(py)?;
+    detached(py, || pool.install(work))
+}
+
+/// The threads among which the library shares its work, and the number of the process that they are of.
+static THREADS: Mutex<Option<(u32, &'static ThreadPool)>> = Mutex::new(None);
+
+/// Gives the threads of this process; the first call makes them. Those of rayon's own pool would be missing in a child that was forked
+/// after their first work, and the child would wait for them for ever.
+///
+/// Python forks while it holds the GIL, as the caller does, so that no child finds the lock taken.
+fn threads(_: Python<'_>) -> PyResult<&'static ThreadPool> {
+    let mut known = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((process, pool)) = *known
+        && process == process::id()
+    {
+        return Ok(pool);
+    }
+    let made = ThreadPoolBuilder::new().build().map_err(|error| {
+        let advice = "end other programs, or set RAYON_NUM_THREADS to a smaller number";
+        let error = Error::new("threads", error.to_string(), "threads of the system", advice);
+        exception(error.of_kind(ErrorKind::Limit))
+    })?;
+    // The pool of a parent is never dropped: to end its threads would wait for them.
+    let made: &'static ThreadPool = Box::leak(Box::new(made));
+    *known = Some((process::id(), made));
+    Ok(made)
 }
 
 /// Makes the exception of a panic.
@@ -84,15 +120,16 @@ fn fault(panic: &(dyn Any + Send)) -> PyErr {
     PyRuntimeError::new_err(format!("a fault of wheelrail, please report it: {text}"))
 }
 
-/// Does work that often calls [`Watch::go_on`], so that Ctrl-C ends it within 0.2 s. `progress` is as `wheelrail._progress.shown`
-/// takes it, with the name of what its bar counts.
+/// Does work, and calls `progress`, which is as `wheelrail._progress.shown` takes it, with the name of what its bar counts. Ctrl-C ends
+/// the wait for the work within 0.2 s: its thread goes on to the next call of [`Watch::go_on`], which work has to make before it writes
+/// results.
 ///
 /// # Errors
 /// Those of the work and of `progress`; KeyboardInterrupt.
-pub(crate) fn watched<T: Send>(
+pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<(&Py<PyAny>, &str)>,
-    work: impl FnOnce(&Watch) -> Result<T> + Send,
+    work: impl FnOnce(&Watch) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
     let Some((progress, counted)) = progress else { return told(py, None, work) };
     let shown = py.import("wheelrail._progress")?.call_method1("shown", (progress, counted))?;
@@ -103,21 +140,19 @@ pub(crate) fn watched<T: Send>(
     result.and_then(|value| closed.map(|_| value))
 }
 
-/// Does work that often calls [`Watch::go_on`], and calls `progress(done, all)`.
-fn told<T: Send>(
+/// Does work as [`watched`] does, and calls `progress(done, all)`.
+fn told<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&Watch) -> Result<T> + Send,
+    work: impl FnOnce(&Watch) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    let watch = Watch::default();
+    let (watch, pool) = (Arc::new(Watch::default()), threads(py)?);
     let result = py.detach(|| {
-        thread::scope(|scope| {
-            let (sender, receiver) = channel();
-            let watch = &watch;
-            // A send fails only where nobody waits for it.
-            scope.spawn(move || drop(sender.send(work(watch))));
-            watch.result(&receiver, progress)
-        })
+        let (sender, receiver) = channel();
+        let seen = Arc::clone(&watch);
+        // A send fails only where nobody waits for it.
+        thread::spawn(move || drop(sender.send(pool.install(|| work(&seen)))));
+        watch.result(&receiver, progress)
     })?;
     let value = result.or_raise()?;
     if let Some(progress) = progress {
@@ -127,8 +162,7 @@ fn told<T: Send>(
     Ok(value)
 }
 
-/// Does work that cannot be stopped half way. Ctrl-C ends the wait for it within 0.2 s: its thread goes on to its end, and
-/// the work has to call [`Watch::go_on`] before it writes results.
+/// Does work as [`watched`] does, and tells no progress.
 ///
 /// # Errors
 /// Those of the work; KeyboardInterrupt.
@@ -136,12 +170,5 @@ pub(crate) fn waited<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Watch) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    let watch = Arc::new(Watch::default());
-    let result = py.detach(|| {
-        let (sender, receiver) = channel();
-        let seen = Arc::clone(&watch);
-        thread::spawn(move || drop(sender.send(work(&seen))));
-        watch.result(&receiver, None)
-    })?;
-    result.or_raise()
+    told(py, None, work)
 }

@@ -73,7 +73,7 @@ pub(crate) fn march<'py>(
         }
     };
     let counted = progress.as_ref().map(|shown| (shown, "positions"));
-    let (rows, events, warnings) = watched(py, counted, |watch| {
+    let (rows, events, warnings) = watched(py, counted, move |watch| {
         let scene = scene::load(&path)?;
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
         let case = scene::march(&scene, folder)?;
@@ -98,7 +98,11 @@ pub(crate) fn march<'py>(
         say(py, "march", warning, "see the scene and its lists of slices")?;
     }
     let MarchColumns { along, columns, numbers } = rows;
-    let rows = arrays_of(py, columns)?;
+    let columns = arrays_of(py, columns)?;
+    // Words for sides and doubts, as in the table of a sweep.
+    let table = py.import("wheelrail._table")?.getattr("Table")?.call1((&columns,))?;
+    let rows = py.get_type::<PyDict>().call1((table,))?.cast_into::<PyDict>()?;
+    rows.set_item("right", columns.get_item("right")?)?;
     rows.set_item(course.column, PyArray1::from_vec(py, along))?;
     for (name, numbers) in MARCH_NUMBERS.into_iter().zip(numbers) {
         rows.set_item(name, PyArray1::from_vec(py, numbers))?;

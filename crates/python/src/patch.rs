@@ -15,7 +15,7 @@ use wheelrail::{Error, Placement};
 use crate::arrays;
 use crate::errors::{OrRaise, exception};
 use crate::files::files;
-use crate::long::detached;
+use crate::long::{detached, shared};
 use crate::values::{made, mesh, vectors};
 
 /// Two axes of a grid.
@@ -54,7 +54,8 @@ impl Patch {
     }
 
     fn title(&self) -> String {
-        let [rail, wheel] = [self.placement.rail(), self.placement.wheel()].map(|body| &body.profile().name);
+        let [rail, wheel] =
+            [self.placement.rail(), self.placement.wheel()].map(|body| body.profile().title());
         format!("{wheel} on {rail}")
     }
 
@@ -204,7 +205,7 @@ impl Patch {
         let cell = cell.map(scene::pressure_cell).transpose().or_raise()?;
         let site = self.grid(spacing.map(GridStep::steps)).and_then(|axes| self.site(axes)).or_raise()?;
         let asked = AskedPressure { cell };
-        let found = detached(py, || PartPressure::over_grid(&site, asked, self.modulus))?.or_raise()?;
+        let found = shared(py, || PartPressure::over_grid(&site, asked, self.modulus))?.or_raise()?;
         let [xi, eta] = [site.grid.xi, site.grid.eta];
         let count = [xi.len(), eta.len()];
         let values = PyArray1::from_vec(py, found.field.unwrap_or_default()).reshape(count)?;
@@ -232,7 +233,7 @@ impl Patch {
         spacing: Option<GridStep>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let axes = self.grid(spacing.map(GridStep::steps)).or_raise()?;
-        let run = detached(py, || self.run(axes))?.or_raise()?;
+        let run = shared(py, || self.run(axes))?.or_raise()?;
         files(py, format, move |format| case::files(&run, format))
     }
 
@@ -255,23 +256,23 @@ impl Patch {
         Ok((make, (self.contact.clone_ref(py), self.patch.approach, self.load, self.modulus)))
     }
 
-    fn _repr_svg_(&self) -> Option<String> {
-        let axes = self.grid(None).ok()?;
+    fn _repr_svg_(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        let Ok(axes) = self.grid(None) else { return Ok(None) };
         let title = [self.title(), self.name.clone()];
         let title = title.each_ref().map(String::as_str);
-        Some(patch_picture(title, &self.placement, &self.patch, [&axes.xi, &axes.eta]))
+        shared(py, || patch_picture(title, &self.placement, &self.patch, [&axes.xi, &axes.eta])).map(Some)
     }
 
     /// Return the picture of the patch as SVG: both profiles, the gap, and the lines of equal separation with the boundary.
     ///
     /// Raises InputError for an empty patch.
-    fn svg(&self) -> PyResult<String> {
+    fn svg(&self, py: Python<'_>) -> PyResult<String> {
         let empty = || {
             let error =
                 Error::new("patch", "an empty patch", "a patch that can be drawn", "give a larger approach");
             exception(error)
         };
-        self._repr_svg_().ok_or_else(empty)
+        self._repr_svg_(py)?.ok_or_else(empty)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Sweeps over many positions.
 
+use std::sync::Arc;
+
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -29,24 +31,25 @@ pub(crate) struct AskedOfSweep {
 /// Sweeps, and makes `wheelrail.Table` of the columns.
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    (system, landmarks, radii): (&WheelsetOnTrack, &SideLandmarks, [f64; 2]),
+    (system, landmarks, radii): (Arc<WheelsetOnTrack>, Arc<SideLandmarks>, [f64; 2]),
     positions: Positions,
     asked: AskedOfSweep,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let AskedOfSweep { within, conicity, ellipses } = asked;
     let count = positions.count;
-    let radius = |side| radii[usize::from(side == TrackSide::Right)];
-    let (columns, tally, doubts) = watched(py, progress.map(|shown| (shown, "positions")), |watch| {
+    let radius = move |side| radii[usize::from(side == TrackSide::Right)];
+    let (columns, tally, doubts) = watched(py, progress.map(|shown| (shown, "positions")), move |watch| {
         watch.at(0, positions.count);
         let positions = listed(&positions, watch)?;
-        let conicity = if conicity { conicity_over(system, &positions, &mut |_, _| {})? } else { None };
+        let conicity = if conicity { conicity_over(&system, &positions, &mut |_, _| {})? } else { None };
         let selection = Selection { within, apart: ONE_CONTACT };
-        let sweep = ParallelSweep { system, selection, conicity: conicity.as_ref(), positions: &positions };
         let doubts = match &conicity {
-            Some(table) => doubts_of_conicities(system, table, &positions, landmarks, radius)?,
+            Some(table) => doubts_of_conicities(&system, table, &positions, &landmarks, radius)?,
             None => Vec::new(),
         };
+        let conicity = conicity.as_ref();
+        let sweep = ParallelSweep { system: &system, selection, conicity, positions: &positions };
         let mut all = (SweepColumns::default(), Tally::default(), doubts);
         all.0.reserve(2 * positions.len());
         sweep.blocks(

@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 
 use numpy::PyArrayMethods;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use wheelrail::case::{self, TABLE_FOLDER, write_table};
+use wheelrail::export::table_wrp;
 use wheelrail::files::{Folder, read_text};
 use wheelrail::table::Beginning;
 use wheelrail::{Error, Interval, scene};
 
 use crate::arrays::{unset, values};
 use crate::errors::{OrRaise, exception};
-use crate::long::{detached, waited};
+use crate::long::{shared, waited};
 
 /// Largest table that is read \[bytes\].
 const LARGEST: usize = 1 << 30;
@@ -69,6 +70,7 @@ pub(crate) fn table(
 ///
 /// `ContactTable(path)` reads a `table.wrp`. Calling it looks up: `table(lateral)`, or `table(lateral, yaw)` over yaw, gives the quantities
 /// of the wheelset by their names, and under "left" and "right" those of each side, an array each; what does not exist is NaN.
+/// A table can be pickled and copied.
 ///
 ///     >>> from pathlib import Path
 ///     >>> from tempfile import mkdtemp
@@ -125,7 +127,7 @@ impl ContactTable {
         let columns = unset(py, numbers.len(), lateral.len())?;
         let mut filled = columns.readwrite();
         let out = filled.as_slice_mut()?;
-        detached(py, || self.table.fill_many(&lateral, &yaw, &numbers, out))?.map_err(exception)?;
+        shared(py, || self.table.fill_many(&lateral, &yaw, &numbers, out))?.map_err(exception)?;
         drop(filled);
         self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
     }
@@ -181,10 +183,23 @@ impl ContactTable {
         Ok(self.table.places(Beginning::Joint, self.one_yaw(yaw)?))
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let make = py.import("wheelrail._wheelrail")?.getattr("table_from_text")?;
+        Ok((make, (PyBytes::new(py, table_wrp(&self.table, "").as_bytes()),)))
+    }
+
     fn __repr__(&self) -> String {
         let [from, to] = self.table.about().lateral.ends();
         format!("ContactTable of {} cells from {from} to {to} mm", self.table.cells().len())
     }
+}
+
+/// Make a table of the text of a `table.wrp`.
+#[pyfunction]
+pub(crate) fn table_from_text(text: &[u8]) -> PyResult<ContactTable> {
+    let text = String::from_utf8_lossy(text);
+    let table = wheelrail::table::ContactTable::read(&text).map_err(|error| error.within("pickled table"));
+    Ok(ContactTable { table: table.or_raise()? })
 }
 
 impl ContactTable {

@@ -244,7 +244,8 @@ impl Wheelset {
         let positions = positions(lateral, yaw, roll)?;
         let asked = AskedOfSweep { within, conicity, ellipses };
         let radii = [self.left_pair(), &self.pair].map(|pair| pair.pair.wheel_radius());
-        sweep(py, (&self.system, &self.landmarks, radii), positions, asked, progress.as_ref())
+        let bodies = (Arc::clone(&self.system), Arc::clone(&self.landmarks), radii);
+        sweep(py, bodies, positions, asked, progress.as_ref())
     }
 
     fn __repr__(&self) -> String {

@@ -11,6 +11,13 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 CROSSING = EXAMPLES / "crossing" / "crossing.toml"
 FLAT = EXAMPLES / "wheel_flat" / "wheel_flat.toml"
 
+SWEPT = """
+rail = { profile = "60E1" }
+wheel = { profile = "S1002", radius = 460.0 }
+track = { spacing = 1500.0 }
+wheelset = { spacing = 1500.0 }
+"""
+
 
 def test_a_march_gives_rows_and_events() -> None:
     along = np.arange(-100.0, 301.0, 10.0)
@@ -27,6 +34,11 @@ def test_a_march_gives_rows_and_events() -> None:
     (k,) = [k for k, jump in jumps if jump > 1.0 and events["event"][k] == "transfer"]
     assert events["side"][k] == "right"
     assert events["rail_x_before_mm"][k] > 40.0 and events["rail_x_after_mm"][k] < -20.0
+    # The columns of a sweep under its names, with their words.
+    sweep = wr.Case.from_toml(SWEPT).sweep([0.0], conicity=False)
+    assert list(rows)[: len(sweep)] == list(sweep)
+    assert np.array_equal(rows["side"] == "right", rows["right"]) and set(rows["side"]) == {"left", "right"}
+    assert rows["doubt"].dtype.kind == "U" and len(rows["doubt"]) == len(rows["z_mm"])
     nose = lowest & rows["right"] & (rows["along_mm"] == 140.0)
     assert rows["contact_pitch_rad"][nose][0] == pytest.approx(np.arctan(0.05), abs=3e-3)
 

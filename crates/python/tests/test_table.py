@@ -1,6 +1,8 @@
 """Contact tables."""
 
+import copy
 import os
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +36,24 @@ def test_no_look_up_errs_by_more_than_the_table_states(tmp_path: Path, yaws: tup
     assert np.array_equal(made(lateral, yaw, quantities=["rolling_radius_mm"])["right"]["rolling_radius_mm"], both)
     assert np.isnan(table([10.0], 0.002)["roll_rad"]).all()
     assert table(lateral[:1], float(yaw[0]))["roll_rad"][0] == found["roll_rad"][0]
+
+
+@pytest.mark.parametrize("yaws", [None, (-0.01, 0.01)])
+def test_tables_are_pickled_and_copied(yaws: tuple[float, float] | None) -> None:
+    table = wr.table(SCENE, (-2.0, 6.5), yaw=yaws, tolerance=1e-2)
+    lateral, yaw = np.linspace(-2.0, 6.5, 200), 0.002
+    expected = table(lateral, yaw)
+    for again in (pickle.loads(pickle.dumps(table)), copy.copy(table), copy.deepcopy(table)):
+        found = again(lateral, yaw)
+        for side in ("left", "right"):
+            for name, values in expected[side].items():
+                assert np.array_equal(found[side][name], values, equal_nan=True), (side, name)
+        assert np.array_equal(found["roll_rad"], expected["roll_rad"])
+        assert (again.errors, again.tolerances, again.lateral, again.yaw) == (
+            table.errors, table.tolerances, table.lateral, table.yaw
+        )
+        assert again.beside_curves == table.beside_curves and repr(again) == repr(table)
+        assert again.hops(yaw) == table.hops(yaw) and again.joints(yaw) == table.joints(yaw)
 
 
 def test_a_table_says_where_a_wheel_is_off_its_rail(tmp_path: Path) -> None:

@@ -12,8 +12,9 @@ that was stopped goes on where it was.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import CancelledError
+from contextlib import closing
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -112,10 +113,10 @@ def sweep(
         arguments = (lateral[part], yaw[part], roll if isinstance(roll, str) else roll[part])
         return client.submit(_part, pickled, part.start, arguments, file, options, pure=False)
 
-    with shown(progress, "parts") as tell:
+    with shown(progress, "parts") as tell, closing(_finished(client, tasks, submit, retries)) as finished:
         if tell:
             tell(len(files) - len(tasks), len(files))
-        for number, _ in enumerate(_finished(client, tasks, submit, retries), start=len(files) - len(tasks) + 1):
+        for number, _ in enumerate(finished, start=len(files) - len(tasks) + 1):
             if tell:
                 tell(number, len(files))
     return files
@@ -147,8 +148,8 @@ def fleet(
     def submit(number: int) -> Future[Any]:
         return client.submit(_fleet_part, scene, list, sections, folder, number, pure=False)
 
-    with shown(progress, "parts") as tell:
-        for done, _ in enumerate(_finished(client, range(count), submit, retries), start=1):
+    with shown(progress, "parts") as tell, closing(_finished(client, range(count), submit, retries)) as finished:
+        for done, _ in enumerate(finished, start=1):
             if tell:
                 tell(done, count)
     return _assembled(scene, list, sections, out=folder)
@@ -160,32 +161,52 @@ def _fleet_part(path: Path, wheels: Path, rails: str | os.PathLike[str] | None, 
     fleet_part(path, wheels, rails, out, number)
 
 
-def _finished(client: Client, tasks: Sequence[_T], submit: Callable[[_T], Future[Any]], retries: int) -> Iterator[_T]:
+def _finished(client: Client, tasks: Sequence[_T], submit: Callable[[_T], Future[Any]], retries: int) -> Generator[_T]:
     """Yield the tasks as they are finished. A task that was lost is submitted again, at most `retries` times."""
     from distributed import KilledWorker, as_completed
 
     waiting = [(task, retries) for task in reversed(tasks)]
     under_way: dict[Future[Any], tuple[_T, int]] = {}
     completed = as_completed()
-    while waiting or under_way:
-        most = _TASKS_A_THREAD * max(sum(client.nthreads().values()), 1)
-        while waiting and len(under_way) < most:
-            task, left = waiting.pop()
-            future = submit(task)
-            under_way[future] = (task, left)
-            completed.add(future)
-        for future in completed.next_batch():
-            task, left = under_way.pop(future)
-            try:
-                future.result()
-            except (KilledWorker, CancelledError):
-                if left == 0:
-                    raise
-                waiting.append((task, left - 1))
-            else:
-                yield task
-            # The scheduler forgets what is done.
+    try:
+        while waiting or under_way:
+            most = _TASKS_A_THREAD * max(sum(client.nthreads().values()), 1)
+            while waiting and len(under_way) < most:
+                task, left = waiting.pop()
+                future = submit(task)
+                under_way[future] = (task, left)
+                completed.add(future)
+            for future in completed.next_batch():
+                task, left = under_way.pop(future)
+                try:
+                    future.result()
+                except (KilledWorker, CancelledError):
+                    if left == 0:
+                        raise
+                    waiting.append((task, left - 1))
+                else:
+                    yield task
+                # The scheduler forgets what is done.
+                future.release()
+    finally:
+        # After Ctrl-C or an error nobody waits for the tasks that no worker has begun.
+        for future in under_way:
             future.release()
+
+
+def _while_wanted() -> Callable[[int, int], None]:
+    """Return what ends the task of the calling thread once its worker closes, or nobody waits for it any more."""
+    from distributed import get_worker
+
+    worker = get_worker()
+    key = worker.get_current_task()
+
+    def go_on(done: int, all: int) -> None:
+        task = worker.state.tasks.get(key)
+        if worker.status.name != "running" or task is None or task.state == "cancelled":
+            raise CancelledError
+
+    return go_on
 
 
 def one_thread() -> None:
@@ -220,8 +241,9 @@ def _mark(root: Path, question: Sequence[object]) -> None:
 
 def _write(file: Path, content: Callable[[Path], object]) -> None:
     """Write a file under a temporary name, and give it its own in one step."""
-    # A worker that is taken for dead may still write: its name must not be that of its successor.
-    temporary = file.with_name(f"{file.name}.{os.getpid()}.tmp")
+    # A worker that is taken for dead may still write: its name must not be that of its successor. What a killed one leaves is hidden, so
+    # that pandas and Arrow do not take it for a part.
+    temporary = file.with_name(f".{file.name}.{os.getpid()}.tmp")
     content(temporary)
     os.replace(temporary, file)
 
@@ -242,7 +264,7 @@ def _part(
     one_thread()
     lateral, yaw, roll = arguments
     wheelset: Wheelset = loads(pickled)
-    table = wheelset.sweep(lateral, yaw, roll, conicity=False, **options).to_arrow()
+    table = wheelset.sweep(lateral, yaw, roll, conicity=False, progress=_while_wanted(), **options).to_arrow()
     numbers = pc.add(table["position"], start).cast("uint64")
     table = table.drop_columns(["conicity", "conicity_error"]).set_column(0, "position", numbers)
     doubles = [field.name for field in table.schema if field.type == "double"]
