@@ -6,13 +6,13 @@ use super::read::format::Format;
 use crate::error::{Error, Result, finite};
 use crate::profile::Side;
 
-/// Default cut-off wavelength \[mm\] of smoothing. It is shorter than the shortest features that carry load (a 13 mm gauge
+/// Longest default cut-off wavelength \[mm\] of smoothing; less noise, and models, have shorter ones. It is shorter than the shortest features that carry load (a 13 mm gauge
 /// corner turns a right angle over 20 mm), and longer than the waves of measuring noise.
 pub const CUTOFF_WAVELENGTH: f64 = 5.0;
 /// Cut-off wavelengths \[mm\] tried before a chain of arcs. The first one with a residual small enough for the tolerance is
 /// used; if there is none, the points are interpolated.
 pub(super) const ARC_CUTOFFS: [f64; 4] = [5.0, 2.5, 1.25, 0.625];
-/// Default kink angle \[rad\], 30°. Worn fillets turn by less within half a cut-off wavelength; edges of plastic flow and
+/// Default kink angle \[rad\], 30°. Worn fillets turn by less within 2.5 mm; edges of plastic flow and
 /// of drawings turn by more.
 pub const KINK_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
 /// Default tolerance of a chain of arcs \[mm\]: the accuracy of hand-held instruments.
@@ -100,8 +100,8 @@ macro_rules! measured_options {
             /// Kind of curve through the points. If not given: "smoothing", or "elements" for a file that has only design elements.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             curve: Option<$crate::measured::CurveKind>;
-            /// Wavelength whose waves smoothing halves, mm; 5 if not given. Before a chain of arcs it smooths the tangents; if not
-            /// given, the tolerance decides there.
+            /// Wavelength whose waves smoothing halves, mm; if not given, the noise of the points decides, up to 5. Before a chain
+            /// of arcs it smooths the tangents; if not given, the tolerance decides there.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             cutoff_wavelength: Option<f64>;
             /// Largest kink that smoothing may round off, rad; larger kinks stay corners. π/6 if not given; π means no corners.

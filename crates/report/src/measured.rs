@@ -331,7 +331,7 @@ fn recommendation(rows: &[MeasuredRow]) -> String {
     }
     let _ = writeln!(
         out,
-        "\nRecommended, and the default: smoothing with a cut-off wavelength of {CUTOFF_WAVELENGTH} mm. Over points up to \
+        "\nRecommended, and the longest default: smoothing with a cut-off wavelength of {CUTOFF_WAVELENGTH} mm. Over points up to \
          1 mm apart with up to 1 µm of noise no other curve has a smaller largest error of s. At 1 mm and 1 µm its \
          pressure is worse than that of 10 mm, which costs a larger error of s and of the profile on every such row. \
          With less than 1 µm of noise, or points every 0.1 mm, 3 mm is better in most columns. With 10 µm of noise take \

@@ -118,7 +118,7 @@ impl Remeasured {
     }
 
     /// Measures the profile once more: each point is off across the profile by a normal deviate times `sigma` \[mm\], and the curve
-    /// is drawn as [`Remeasured::drawn_by`] says, or else smoothed with the default cut-off wavelength.
+    /// is drawn as [`Remeasured::drawn_by`] says, or else smoothed as its own noise asks for.
     ///
     /// # Errors
     /// Points that no curve can be drawn through, if `sigma` is as large as their distance.
