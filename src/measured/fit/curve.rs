@@ -17,7 +17,7 @@ use crate::profile::Segment;
 const SMOOTHING_SHARE: f64 = 0.5;
 
 /// Largest deviation of most points from a curve that is noise, as a multiple of the noise between neighbours.
-const OF_NOISE: f64 = 1.5;
+const OF_NOISE: f64 = 1.25;
 
 /// A corner of the curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
