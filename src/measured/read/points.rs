@@ -109,7 +109,7 @@ pub struct Points {
     /// Rows without values between points.
     pub gaps: Vec<Gap>,
     /// The first and the last line of rows without values behind the last point.
-    pending: Option<(usize, usize)>,
+    pub(in crate::measured) pending: Option<(usize, usize)>,
     /// The columns of a table that was read by its likeliest two, for want of an option.
     pub columns: Option<ColumnChoice>,
 }
