@@ -429,7 +429,9 @@ fn graded(band: &Band, whole: [f64; 2]) -> Vec<f64> {
         let [from, to] = [edges[piece], edges[piece + 1]];
         // Both sides of an ellipse rise by half of its width.
         let rise = (to.low - from.low).abs().max((to.high - from.high).abs()) / (2.0 * whole[1]);
-        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * (share * t.width()).max(rise)).round() as usize);
+        // A part without width, at a mere touch, has no share of it.
+        let share = (share * t.width()).max(rise).min(1.0);
+        let n = LEAST_POINTS.max((POINTS_PER_SIDE as f64 * share).round() as usize);
         nodes.extend((1..n).map(|k| grading.xi(t.step(k, n))));
         nodes.push(band.corners[piece + 1]);
     }
