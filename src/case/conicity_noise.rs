@@ -157,7 +157,7 @@ pub(super) fn uncertainty(
     let side = |side, pair| NoisySide::new(side, pair, noise.step).map_err(|error| error.within("noise"));
     let sides = [side(system.left(), pairs[0])?, side(system.right(), pairs[1])?];
     let having = [const { AtomicUsize::new(0) }; UNCERTAIN.len()];
-    let Sampled { failed, spreads } = sampled(noise.samples, noise.seed, |deviates| {
+    let Sampled { failed, mut spreads } = sampled(noise.samples, noise.seed, |deviates| {
         let widened = noise.gauge * deviates.draw();
         let left = sides[0].sample(noise, widened, deviates)?;
         let right = sides[1].sample(noise, widened, deviates)?;
@@ -168,7 +168,6 @@ pub(super) fn uncertainty(
         Ok(found)
     })?;
     let lost = having.map(|count| noise.samples - count.into_inner());
-    let mut spreads = spreads;
     for (spread, _) in
         spreads.iter_mut().zip(lost).filter(|(_, lost)| *lost as f64 > MOST_LOST * noise.samples as f64)
     {

@@ -134,7 +134,7 @@ pub struct KeyFigures {
 /// Finds the key figures of a wheelset on its track.
 ///
 /// Accuracy: conicities as of [`Conicity`]. Cost: one table of Δr up to 4 mm and 31 searches, with two different sides two tables
-/// up to 6 mm and 61 searches.
+/// over 8 mm together and 61 searches.
 ///
 /// # Errors
 /// A given roll, by which the wheelset is held.

@@ -287,8 +287,9 @@ impl Conicity {
     }
 }
 
-/// Extends the tables to the left and to the right of the centre until a movement with this amplitude \[mm\] turns within them, or the
-/// wheelset leaves its track on a side on which it would turn; tells `told` the searches of every step.
+/// Extends the tables to the left and to the right of the centre, always that with less energy, until a movement with this amplitude
+/// \[mm\] turns within them, or the wheelset leaves its track on the side with less: all movements that turn before that are within
+/// them. Tells `told` the searches of every step.
 fn reach_turning_points<F>(
     tables: [&mut RefinedTable<F>; 2],
     amplitude: f64,
@@ -298,18 +299,19 @@ where
     F: FnMut(f64, &mut SideBranches) -> Result<bool>,
 {
     let mut movements = tables.each_ref().map(|table| Movement::new(table.knots()));
+    let mut on_track = [true; 2];
     // What refines the tables further may move the turning points a little.
     while turning(movements.each_ref(), amplitude + WIDEST).is_none() {
         let [left, right] = movements.each_ref().map(|movement| movement.highest_at(f64::INFINITY));
         let short = usize::from(right < left);
-        let table = &mut *tables[short];
-        let [before, _] = table.searches();
-        let on_track = table.lengthen(GROWTH * amplitude)?;
-        table.refine(ACCURACY, &mut |_, _| {})?;
-        told(table.searches()[0] - before);
-        if !on_track {
+        if !on_track[short] {
             break;
         }
+        let table = &mut *tables[short];
+        let [before, _] = table.searches();
+        on_track[short] = table.lengthen(GROWTH * amplitude)?;
+        table.refine(ACCURACY, &mut |_, _| {})?;
+        told(table.searches()[0] - before);
         movements[short] = Movement::new(table.knots());
     }
     Ok(())
