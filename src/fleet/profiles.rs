@@ -132,7 +132,9 @@ fn read(fleet: &Listed, key: &Key) -> Result<Read> {
     let exact = if again { Some(scene::profile_of(&own, folder, side)) } else { None };
     let (exact, _) = exact.transpose()?.unwrap_or((profile.clone(), None));
     let measures = measure(&exact, side, None, &MeasureOptions::default())?;
-    let measures = measures.with_diameter(record.as_ref().and_then(|record| record.diameter));
+    let measures = measures
+        .with_diameter(record.as_ref().and_then(|record| record.diameter))
+        .compared(record.as_ref().map_or(&[], |record| record.stated.as_slice()));
     Ok(Read { profile, record, measures: Some(measures) })
 }
 

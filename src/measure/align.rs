@@ -2,13 +2,16 @@
 
 use serde::Serialize;
 
-use super::curve::MarkedCurve;
-use super::fit::{FittedMotion, NominalFit};
-use super::nominal::{Back, Nominal, back_of, is_from_back, own_back, sized};
+use super::curve::{CurvePoint, MarkedCurve};
+use super::fit::{FITS, FittedMotion, NominalFit};
+use super::nominal::{Back, Nominal, back_of, from_tip, is_from_back, own_back};
 use super::options::{Align, MeasureOptions};
 use crate::numerics::interval::Interval;
-use crate::profile::{Profile, Side, Station, trace};
+use crate::profile::{Side, Station};
 
+/// Share of the parts over which places have to be found; for parts of both sides, of which one may be measured alone.
+const LEAST_PART: f64 = 0.5;
+const LEAST_OF_BOTH: f64 = 0.25;
 /// Distance of marks \[mm\] of curves that are fitted.
 const STEP: f64 = 0.25;
 /// Sine of 60°.
@@ -23,10 +26,20 @@ const STARTS: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
 const MOST_WORK: usize = 200_000_000;
 /// Root mean square \[mm\] above which fitted parts are probably worn.
 const LARGEST_RESIDUAL: f64 = 0.1;
+/// Least length \[mm\] of what fits: a shorter base leaves a turn by 0.05 mm over it, which are 0.4 mm at the other end of a wheel. A best
+/// fit that turns the profile by more than an instrument needs a third of the profile.
+const LEAST_BASE: f64 = 20.0;
 
-/// Turn \[deg\] above which an alignment is doubted: rails lie inclined by up to 1:20 and are canted a little, instruments are
-/// put on by less.
-const MOST_TURNED: f64 = 5.0;
+/// Turn \[deg\] by which instruments are put on at most; beside it rails lie inclined.
+const MOST_TURNED: f64 = 0.3;
+/// Inclinations of rails: 1 in so many.
+const INCLINED: [f64; 4] = [f64::INFINITY, 40.0, 30.0, 20.0];
+/// Depth \[mm\] below the top of rail at which faces are brought to each other.
+const FACE: f64 = 14.0;
+/// Width \[mm\] by which an outline recedes below a head.
+const RECEDES: f64 = 5.0;
+/// Distance \[mm\] of first guesses that lead to one fit.
+const ONE_START: f64 = 1.0;
 
 /// How a profile was aligned.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,12 +62,27 @@ pub(super) struct Aligned {
     pub back: f64,
     /// Why no flange back was found, if `back` follows from x = 0 as the taping line instead.
     pub no_back: Option<String>,
+    /// How far the flange back may lie from `back` \[mm\], besides what an instrument is put on by.
+    pub reach: f64,
+    /// The motion from the axes of the points.
+    pub frame: Station,
+    /// Why no wear follows from it.
+    pub refused: Option<String>,
+    /// Whether the parts that wear spares fit, so that it shows how the profile lies.
+    pub parts_fit: bool,
     pub alignment: Alignment,
 }
 
 impl Aligned {
-    fn doubted(mut self, doubt: Option<String>) -> Self {
-        self.alignment.doubt = doubt;
+    /// Returns the same alignment of another curve.
+    pub fn with(&self, curve: MarkedCurve) -> Self {
+        let (no_back, alignment) = (self.no_back.clone(), self.alignment.clone());
+        Self { curve, no_back, refused: None, alignment, ..*self }
+    }
+
+    fn with_back(mut self, back: &Back) -> Self {
+        self.alignment.doubt.clone_from(&back.doubt);
+        self.reach = back.reach;
         self
     }
 }
@@ -64,48 +92,49 @@ impl Aligned {
 /// # Errors
 /// What the alignment needs and the profile does not have, as text.
 pub(super) fn align(
-    profile: &Profile,
+    curve: &MarkedCurve,
     side: Side,
     nominal: Option<&Nominal>,
     options: &MeasureOptions,
 ) -> Result<Aligned, String> {
-    let curve = sized(profile)?;
     let chosen = options.align.or(nominal.map(|_| Align::BestFit));
     match (side, nominal) {
-        (Side::Rail, None) => Ok(moved(&curve, [0.0; 2], 0.0, Align::None, "the file's axes")),
+        (Side::Rail, None) => Ok(moved(curve, [0.0; 2], 0.0, Align::None, "the file's axes")),
         (Side::Wheel, None) => {
             let own = match options.align {
-                Some(Align::None) => Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None }),
-                Some(_) => back_of(&curve),
-                None => own_back(&curve),
+                Some(Align::None) => {
+                    Ok(Back { x: 0.0, how: "the file's x = 0".into(), reach: 0.0, doubt: None })
+                }
+                Some(_) => back_of(curve),
+                None => own_back(curve),
             };
-            let Back { x: back, how, doubt } = match own {
+            let back = match own {
                 Ok(own) => own,
-                Err(why) if options.align.is_none() => return from_taping_line(&curve, why, options),
+                Err(why) if options.align.is_none() => return from_taping_line(curve, why, options),
                 Err(why) => return Err(why),
             };
-            let align =
-                if back == 0.0 && options.align != Some(Align::Back) { Align::None } else { Align::Back };
-            Ok(moved(&curve, [0.0; 2], back, align, &format!("X = 0 is {how}")).doubted(doubt))
+            let from_back = back.x != 0.0 || options.align == Some(Align::Back);
+            let align = if from_back { Align::Back } else { Align::None };
+            Ok(moved(curve, [0.0; 2], back.x, align, &format!("X = 0 is {}", back.how)).with_back(&back))
         }
-        (_, Some(nominal)) => {
-            with_nominal(profile, &curve, side, nominal, chosen.unwrap_or(Align::None), options)
-        }
+        (_, Some(nominal)) => with_nominal(curve, side, nominal, chosen.unwrap_or(Align::None), options),
     }
 }
 
 /// Aligns a wheel without its back whose flange's tip shows that x = 0 is the taping line.
 fn from_taping_line(curve: &MarkedCurve, why: String, options: &MeasureOptions) -> Result<Aligned, String> {
     let back = -options.tread_at;
-    if !curve.highest(-1.0).is_some_and(|tip| is_from_back(tip.x - back)) {
-        return Err(why);
-    }
+    let tip = curve
+        .highest(-1.0)
+        .map(|tip| tip.x - back)
+        .filter(|tip| is_from_back(*tip))
+        .ok_or_else(|| why.clone())?;
     let text = format!("the file's x = 0 is X = {}", options.tread_at);
-    Ok(Aligned { no_back: Some(why), ..moved(curve, [0.0; 2], back, Align::None, &text) })
+    let reach = from_tip(tip);
+    Ok(Aligned { no_back: Some(why), reach, ..moved(curve, [0.0; 2], back, Align::None, &text) })
 }
 
 fn with_nominal(
-    profile: &Profile,
     curve: &MarkedCurve,
     side: Side,
     nominal: &Nominal,
@@ -119,39 +148,39 @@ fn with_nominal(
             Ok(moved(curve, [nominal.back, 0.0], nominal.back, align, text))
         }
         (Align::Back, _) => {
-            let Back { x: back, how, doubt } = back_of(curve)?;
-            let text = format!("X = 0 is {how}; heights are the file's");
-            Ok(moved(curve, [nominal.back - back, 0.0], nominal.back, align, &text).doubted(doubt))
+            let back = back_of(curve)?;
+            let text = format!("X = 0 is {}; heights are the file's", back.how);
+            Ok(moved(curve, [nominal.back - back.x, 0.0], nominal.back, align, &text).with_back(&back))
         }
         (Align::TreadPoint, _) => {
-            let Back { x: back, how, doubt } = back_of(curve)?;
-            let x = nominal.back - back;
-            let tread = super::wheel::tread(curve, back, options)?;
+            let back = back_of(curve)?;
+            let tread = super::wheel::tread(curve, back.x, options)?;
             let to = super::wheel::tread(&nominal.curve, nominal.back, options)?;
-            let text = format!("X = 0 is {how}; the tread at X = {} is the nominal's", options.tread_at);
-            Ok(moved(curve, [x, to - tread], nominal.back, align, &text).doubted(doubt))
+            let text =
+                format!("X = 0 is {}; the tread at X = {} is the nominal's", back.how, options.tread_at);
+            let by = [nominal.back - back.x, to - tread];
+            Ok(moved(curve, by, nominal.back, align, &text).with_back(&back))
         }
-        _ => fitted(profile, curve, side, nominal, align, options),
+        _ => fitted(curve, side, nominal, align, options),
     }
 }
 
 /// Moves a curve without turning it.
 fn moved(curve: &MarkedCurve, [x, z]: [f64; 2], back: f64, align: Align, text: &str) -> Aligned {
-    let curve = curve.placed(&Station { x, z, ..Station::AXES });
+    let frame = Station { x, z, ..Station::AXES };
     let alignment = Alignment { align, text: text.into(), residual: None, doubt: None };
-    Aligned { curve, back, no_back: None, alignment }
+    let curve = curve.placed(&frame);
+    Aligned { curve, back, no_back: None, reach: 0.0, frame, refused: None, parts_fit: true, alignment }
 }
 
 fn fitted(
-    profile: &Profile,
     curve: &MarkedCurve,
     side: Side,
     nominal: &Nominal,
     align: Align,
     options: &MeasureOptions,
 ) -> Result<Aligned, String> {
-    let coarse = |profile: &Profile| MarkedCurve { marks: trace(profile, STEP) };
-    let (measured, onto) = (coarse(profile), coarse(nominal.profile));
+    let (measured, onto) = (curve.thinned(STEP), MarkedCurve::drawn(nominal.profile, STEP));
     let work = measured.marks.len().saturating_mul(onto.marks.len());
     if work > MOST_WORK {
         return Err(format!(
@@ -159,70 +188,148 @@ fn fitted(
         ));
     }
     let (parts, what) = parts(&onto, side, align, options);
-    let fit = NominalFit { measured: &measured, nominal: &onto, parts: &parts };
+    let least_part = if align == Align::Web { LEAST_OF_BOTH } else { LEAST_PART };
+    let fit = NominalFit { measured: &measured, nominal: &onto, parts: &parts, least_part };
     let all: Vec<Result<FittedMotion, String>> =
         starts(&measured, &onto, side).into_iter().map(|start| fit.of_parts(start)).collect();
     let best = all.iter().flatten().min_by(|a, b| a.rms.total_cmp(&b.rms)).copied();
     let none = || all.iter().find_map(|found| found.as_ref().err().cloned()).unwrap_or_default();
     let of_parts = best.ok_or_else(|| format!("no alignment by {what}: {}", none()))?;
     let (found, by) = if align == Align::BestFit {
-        let found = fit.of_all(of_parts).map_err(|why| format!("no alignment by all that fits: {why}"))?;
+        let fits = (3.0 * of_parts.rms).clamp(FITS.low, FITS.high);
+        let found =
+            fit.of_all(of_parts, fits).map_err(|why| format!("no alignment by all that fits: {why}"))?;
         (found, format!("all that fits, from {what}"))
     } else {
         (of_parts, what)
     };
     let FittedMotion { motion, rms, length } = found;
     let turn = motion.angle().to_degrees();
-    let off = (of_parts.rms > LARGEST_RESIDUAL).then(|| {
-        format!("alignment by parts that are off the nominal by {:.3} mm, more than {LARGEST_RESIDUAL}: worn, or another nominal", of_parts.rms)
-    });
-    let turned = (turn.abs() > MOST_TURNED).then(|| {
-        format!(
-            "alignment by a turn of {turn:.3} deg, more than {MOST_TURNED}: another nominal, or worn parts"
-        )
-    });
-    let doubt = off.or(turned);
+    let is_turned = align == Align::BestFit && turned(turn, side).is_some();
+    let least = if is_turned { (measured.lengths().sum::<f64>() / 3.0).max(LEAST_BASE) } else { LEAST_BASE };
+    let refused = refused(of_parts, found, least);
+    let parts_fit = of_parts.rms <= LARGEST_RESIDUAL;
+    let doubt = refused.clone().or_else(|| turned(turn, side));
     let text = format!(
         "{by}, over {length:.0} mm; moved by ({:.3}, {:.3}) mm, turned by {turn:.3} deg",
         motion.x, motion.z
     );
     let alignment = Alignment { align, text, residual: Some(rms), doubt };
-    Ok(Aligned { curve: curve.placed(&motion), back: nominal.back, no_back: None, alignment })
+    let curve = curve.placed(&motion);
+    Ok(Aligned {
+        curve,
+        back: nominal.back,
+        no_back: None,
+        reach: 0.0,
+        frame: motion,
+        refused,
+        parts_fit,
+        alignment,
+    })
 }
 
-/// Returns first guesses of the motion: back and tip of a flange, field side and top of a rail are brought to each other.
+/// Fits a curve to another by the parts that wear spares, then by all that fits, from all starts; returns what fits over the greatest
+/// length.
+pub(super) fn consensus(measured: &MarkedCurve, onto: &MarkedCurve, side: Side) -> Option<FittedMotion> {
+    let (parts, _) = parts(onto, side, Align::BestFit, &MeasureOptions::default());
+    let fit = NominalFit { measured, nominal: onto, parts: &parts, least_part: LEAST_OF_BOTH };
+    let all = starts(measured, onto, side).into_iter();
+    let fits = all.filter_map(|start| fit.of_all(fit.of_parts(start).ok()?, 0.5 * FITS.high).ok());
+    fits.max_by(|a, b| a.length.total_cmp(&b.length))
+}
+
+/// Tells why a fit gives no wear: its parts are off the nominal, or its base is shorter than `least` \[mm\].
+fn refused(of_parts: FittedMotion, found: FittedMotion, least: f64) -> Option<String> {
+    let FittedMotion { rms, length, .. } = of_parts;
+    if rms > LARGEST_RESIDUAL {
+        return Some(format!(
+            "alignment by parts of {length:.1} mm that are off the nominal by {rms:.3} mm, more than {LARGEST_RESIDUAL}: worn, or another nominal"
+        ));
+    }
+    let turn = found.motion.angle().to_degrees();
+    (found.length < least).then(|| {
+        format!(
+            "alignment by a turn of {turn:.3} deg over a base of {:.1} mm, less than {least:.0}, with a residual of {:.3} mm: worn, or another nominal",
+            found.length, found.rms
+        )
+    })
+}
+
+/// Doubts a turn \[deg\] beyond that of instruments, and of rails as they lie.
+fn turned(turn: f64, side: Side) -> Option<String> {
+    let lies =
+        |n: &f64| side == Side::Rail && (turn.abs() - n.recip().atan().to_degrees()).abs() <= MOST_TURNED;
+    if turn.abs() <= MOST_TURNED || INCLINED.iter().any(lies) {
+        return None;
+    }
+    let but = if side == Side::Rail { " and no inclination of 1:20, 1:30 or 1:40" } else { "" };
+    Some(format!(
+        "alignment by a turn of {turn:.3} deg, more than the {MOST_TURNED} of instruments{but}: a turned file, another nominal, or worn parts"
+    ))
+}
+
+/// Returns first guesses of the motion. Of a wheel, back or tip of the flange are brought to each other, of a rail the faces of either
+/// side and the top, whichever are measured.
 fn starts(measured: &MarkedCurve, nominal: &MarkedCurve, side: Side) -> Vec<Station> {
     let sign = if side == Side::Rail { 1.0 } else { -1.0 };
-    let ends = |curve: &MarkedCurve| {
+    let (Some(best), Some(to)) = (measured.highest(sign), nominal.highest(sign)) else { return Vec::new() };
+    let places = |curve: &MarkedCurve, best: CurvePoint| {
         let x = curve.extent();
-        let outer = if side == Side::Rail { x.high } else { x.low };
-        let best = curve.highest(sign);
-        let back = side == Side::Rail || back_of(curve).is_ok();
-        (best.filter(|_| !back).map_or(outer, |tip| tip.x), best.map_or(0.0, |best| best.z), back)
+        if side == Side::Wheel {
+            return vec![back_of(curve).is_ok().then_some(x.low), Some(best.x)];
+        }
+        let faces = curve.at_z(best.z - FACE);
+        let [left, right] = [
+            faces.iter().rfind(|face| face.mark < best.mark),
+            faces.iter().find(|face| face.mark >= best.mark),
+        ];
+        vec![right.map(|face| face.x), left.map(|face| face.x), Some(x.high)]
     };
-    let ((mut x, z, back), (to_x, to_z, _)) = (ends(measured), ends(nominal));
-    if !back {
-        // Without its back a flange is brought to the other by their tips.
-        x += to_x - nominal.highest(sign).map_or(to_x, |tip| tip.x);
+    let mut across: Vec<f64> = Vec::new();
+    for (own, onto) in places(measured, best).into_iter().zip(places(nominal, to)) {
+        if let (Some(own), Some(onto)) = (own, onto)
+            && across.iter().all(|other| (other - (onto - own)).abs() > ONE_START)
+        {
+            across.push(onto - own);
+        }
     }
     let wear = if side == Side::Rail { STARTS.as_slice() } else { &STARTS[..1] };
-    wear.iter().map(|wear| Station { x: to_x - x, z: to_z - z - wear, ..Station::AXES }).collect()
+    let start = |x: f64, wear: f64| Station { x, z: to.z - best.z - wear, ..Station::AXES };
+    across.into_iter().flat_map(|x| wear.iter().map(move |wear| start(x, *wear))).collect()
+}
+
+/// Returns the marks at which the outline of a rail's head begins to recede, to the left and to the right of its top.
+fn sides_of_head(curve: &MarkedCurve) -> [usize; 2] {
+    let top = curve.highest(1.0).map_or(0, |top| top.mark);
+    let x = |k: usize| curve.marks[k].station.x;
+    let outermost = |all: &mut dyn Iterator<Item = usize>, sign: f64| {
+        let mut best = top;
+        for k in all {
+            if sign * x(k) > sign * x(best) {
+                best = k;
+            } else if sign * x(k) < sign * x(best) - RECEDES {
+                break;
+            }
+        }
+        best
+    };
+    [outermost(&mut (0..top).rev(), -1.0), outermost(&mut (top + 1..curve.marks.len()), 1.0)]
 }
 
 /// Returns which marks of the nominal are fitted, and their name.
 fn parts(nominal: &MarkedCurve, side: Side, align: Align, options: &MeasureOptions) -> (Vec<bool>, String) {
     let marks = &nominal.marks;
     let stations = || marks.iter().map(|mark| mark.station);
-    let [first, last] = nominal.extent().ends();
+    let last = nominal.extent().high;
     match (align, side) {
         (Align::Unworn, _) => {
             let inside = |x: f64| options.unworn.iter().any(|range| range.contains(x));
             (stations().map(|at| inside(at.x)).collect(), "the given ranges".into())
         }
         (Align::Web, _) => {
-            let before = marks.iter().position(|mark| mark.station.x == first).unwrap_or(0);
-            let after = marks.iter().rposition(|mark| mark.station.x == last).unwrap_or(marks.len());
-            ((0..marks.len()).map(|k| k < before || k > after).collect(), "web and underside".into())
+            let [before, after] = sides_of_head(nominal);
+            let below = |k: usize| k < before || k > after;
+            ((0..marks.len()).map(below).collect(), "web, underside of the head and foot".into())
         }
         (_, Side::Rail) => {
             let top = nominal.highest(1.0).map_or(0, |top| top.mark);

@@ -2,7 +2,7 @@
 
 use super::align::{self, Aligned};
 use super::curve::MarkedCurve;
-use super::nominal::Nominal;
+use super::nominal::{Nominal, sized};
 use super::options::MeasureOptions;
 use super::overlay::across;
 use crate::error::{Error, Result};
@@ -92,7 +92,7 @@ pub fn average(
     let nominal = nominal.map(|nominal| Nominal::named(nominal, side)).transpose()?;
     let (mut curves, mut findings) = (Vec::new(), Vec::new());
     for profile in profiles {
-        match align::align(profile, side, nominal.as_ref(), options) {
+        match sized(profile).and_then(|curve| align::align(&curve, side, nominal.as_ref(), options)) {
             Ok(aligned) => {
                 let doubt = aligned.alignment.doubt.iter();
                 findings.extend(doubt.map(|doubt| format!("{}: {doubt}", profile.name)));

@@ -1,5 +1,9 @@
 //! A profile as marks along it, with its crossings of lines and its extremes.
 
+use std::sync::Arc;
+
+use super::smooth::NoisyPoints;
+use crate::measured::noise::Deviates;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::profile::{Mark, Profile, Station, trace};
@@ -11,6 +15,10 @@ const STEP: f64 = 0.05;
 #[derive(Debug, Clone)]
 pub(super) struct MarkedCurve {
     pub marks: Vec<Mark>,
+    /// Whether the way from each mark to the next was not measured.
+    pub unknown: Vec<bool>,
+    /// The points with their noise.
+    points: Arc<NoisyPoints>,
 }
 
 /// A point on a curve \[mm\].
@@ -20,34 +28,101 @@ pub(super) struct CurvePoint {
     pub z: f64,
     /// Index of the mark before it.
     pub mark: usize,
+    /// Whether it lies where nothing was measured.
+    unknown: bool,
+}
+
+impl CurvePoint {
+    /// Returns the point, or why it has no value: it lies in a gap.
+    pub fn known(self) -> Result<Self, String> {
+        let Self { x, z, unknown, .. } = self;
+        if unknown { Err(format!("a gap of the points at ({x:.1}, {z:.1}) mm")) } else { Ok(self) }
+    }
 }
 
 impl MarkedCurve {
+    /// Takes the curve of a profile; where its points are noisy, the smoothed one.
     pub fn new(profile: &Profile) -> Self {
-        Self { marks: trace(profile, STEP) }
+        let points = NoisyPoints::new(profile);
+        match points.smoothed() {
+            Some((marks, unknown)) => Self { marks, unknown, points: Arc::new(points) },
+            None => Self::drawn(profile, STEP),
+        }
+    }
+
+    /// Takes a curve as it is drawn, with marks at most `step` \[mm\] apart.
+    pub fn drawn(profile: &Profile, step: f64) -> Self {
+        let marks = trace(profile, step);
+        let gap = |pair: &[Mark]| {
+            pair[0].segment == pair[1].segment && profile.segments()[pair[0].segment].is_gap()
+        };
+        let unknown = marks.windows(2).map(gap).chain([false]).take(marks.len()).collect();
+        Self { marks, unknown, points: Arc::default() }
+    }
+
+    /// Returns the curve as it may be measured once more, in the axes of its points; `None` for points without noise.
+    pub fn again(&self, deviates: &mut Deviates) -> Option<Self> {
+        let (marks, unknown) = self.points.again(deviates)?;
+        Some(Self { marks, unknown, points: Arc::clone(&self.points) })
     }
 
     /// Returns the curve as it lies after its axes are put on `frame`.
     pub fn placed(&self, frame: &Station) -> Self {
         let placed = |mark: &Mark| Mark { station: mark.station.placed_by(frame), ..*mark };
-        Self { marks: self.marks.iter().map(placed).collect() }
+        let marks = self.marks.iter().map(placed).collect();
+        Self { marks, unknown: self.unknown.clone(), points: Arc::clone(&self.points) }
+    }
+
+    /// Returns the part with these marks.
+    fn part(&self, range: std::ops::Range<usize>) -> Self {
+        let range = range.start.min(self.marks.len())..range.end.min(self.marks.len());
+        let (marks, unknown) = (self.marks[range.clone()].to_vec(), self.unknown[range].to_vec());
+        Self { marks, unknown, points: Arc::clone(&self.points) }
     }
 
     /// Returns the marks from `first` on.
     pub fn from(&self, first: usize) -> Self {
-        Self { marks: self.marks.get(first..).unwrap_or_default().to_vec() }
+        self.part(first..self.marks.len())
     }
 
     /// Returns the marks up to `last`, with it.
     pub fn up_to(&self, last: usize) -> Self {
-        Self { marks: self.marks.iter().take(last + 1).copied().collect() }
+        self.part(0..last.saturating_add(1))
     }
 
-    /// Returns the length that each mark stands for \[mm\]: half the way to its neighbours.
+    /// Returns the curve with marks at least `apart` \[mm\] from each other, without those in a gap.
+    pub fn thinned(&self, apart: f64) -> Self {
+        let mut own = self.part(0..0);
+        for (k, mark) in self.marks.iter().enumerate() {
+            let inside = self.unknown[k] && k.checked_sub(1).is_some_and(|before| self.unknown[before]);
+            if !inside && own.marks.last().is_none_or(|last| mark.s - last.s >= apart) {
+                own.marks.push(*mark);
+                own.unknown.push(false);
+            }
+            if let Some(unknown) = own.unknown.last_mut() {
+                *unknown |= self.unknown[k];
+            }
+        }
+        own
+    }
+
+    /// Tells whether something between two heights or abscissas was not measured: a·x + b·z of the gap's ends meets the range.
+    pub fn has_gap(&self, [a, b]: [f64; 2], range: Interval) -> bool {
+        let over = |k: usize| a * self.marks[k].station.x + b * self.marks[k].station.z;
+        let gap = |k: &usize| self.unknown[*k] && *k + 1 < self.marks.len();
+        (0..self.marks.len()).filter(gap).any(|k| {
+            let own = Interval::around([over(k), over(k + 1)]);
+            own.high > range.low && own.low < range.high
+        })
+    }
+
+    /// Returns the length that each mark stands for \[mm\]: half the way to its neighbours, but nothing of a gap.
     pub fn lengths(&self) -> impl Iterator<Item = f64> {
-        let s = |k: usize| self.marks[k].s;
-        let last = self.marks.len().saturating_sub(1);
-        (0..self.marks.len()).map(move |k| 0.5 * (s((k + 1).min(last)) - s(k.saturating_sub(1))))
+        let step = |k: usize| match self.marks.get(k..k + 2) {
+            Some([a, b]) if !self.unknown[k] => b.s - a.s,
+            _ => 0.0,
+        };
+        (0..self.marks.len()).map(move |k| 0.5 * (step(k) + k.checked_sub(1).map_or(0.0, step)))
     }
 
     /// Returns the range of x \[mm\]; empty for a curve without marks.
@@ -66,7 +141,7 @@ impl MarkedCurve {
             }
             if let Some(share) = bracketed(|share| over(pair[0].between(&pair[1], share)), 0.0, 1.0) {
                 let [x, z] = pair[0].between(&pair[1], share);
-                found.push(CurvePoint { x, z, mark });
+                found.push(CurvePoint { x, z, mark, unknown: self.unknown[mark] });
             }
         }
         found
@@ -86,9 +161,10 @@ impl MarkedCurve {
     pub fn highest(&self, sign: f64) -> Option<CurvePoint> {
         let height = |k: &usize| sign * self.marks[*k].station.z;
         let best = (0..self.marks.len()).max_by(|a, b| height(a).total_cmp(&height(b)))?;
-        let at = |mark: usize, [x, z]: [f64; 2]| CurvePoint { x, z, mark };
+        let at = |mark: usize, [x, z]: [f64; 2], unknown| CurvePoint { x, z, mark, unknown };
         let own = &self.marks[best].station;
-        let mut found = at(best, [own.x, own.z]);
+        let beside = [best.checked_sub(1), Some(best)].into_iter().flatten();
+        let mut found = at(best, [own.x, own.z], beside.into_iter().any(|k| self.unknown[k]));
         for k in best.saturating_sub(1)..=best {
             let Some(pair) = self.marks.get(k..k + 2) else { continue };
             let level = |share: f64| {
@@ -97,7 +173,7 @@ impl MarkedCurve {
                 pair[0].between(&pair[1], share + h)[1] - pair[0].between(&pair[1], share - h)[1]
             };
             if let Some(share) = bracketed(level, 0.0, 1.0) {
-                let place = at(k, pair[0].between(&pair[1], share));
+                let place = at(k, pair[0].between(&pair[1], share), self.unknown[k]);
                 if sign * place.z > sign * found.z {
                     found = place;
                 }

@@ -11,8 +11,6 @@ use crate::profile::{Mark, Station, beside};
 const FARTHEST: f64 = 6.0;
 /// Least cosine between the tangents of a place and its foot: the other face of a flange or head does not count.
 const ALONG: f64 = 0.7;
-/// Part of the nominal's own length over which places have to be found.
-const LEAST_PART: f64 = 0.5;
 /// Length \[mm\] by which a turn counts as a motion, and root mean square of the distances \[mm\] that the worst motion by 1 mm
 /// has to make. A straight face alone makes none along itself.
 const ARM: f64 = 10.0;
@@ -22,10 +20,10 @@ const MOST_PASSES: usize = 200;
 /// Motion \[mm\] at which a fit is settled, a thousandth of the instrument's resolution.
 const SETTLED: f64 = 1e-6;
 /// Smallest and largest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
-const FITS: Interval = Interval::new(0.005, 0.1);
-/// Rounds in which the places that fit are chosen anew, and the motion \[mm\] at which they are settled.
-const MOST_ROUNDS: usize = 50;
-const ROUND_SETTLED: f64 = 1e-4;
+pub(super) const FITS: Interval = Interval::new(0.005, 0.1);
+/// Motion \[mm\] below which the places that belong to a part stay chosen, a tenth of the instrument's resolution: at a part's end
+/// a place may belong to it after one pass and not after the next, for ever.
+const CHOSEN: f64 = 1e-3;
 
 /// A fit of a measured curve to a nominal one.
 pub(super) struct NominalFit<'a> {
@@ -33,6 +31,8 @@ pub(super) struct NominalFit<'a> {
     pub nominal: &'a MarkedCurve,
     /// Whether each mark of the nominal belongs to a part that is fitted.
     pub parts: &'a [bool],
+    /// Share of the parts' length over which places have to be found.
+    pub least_part: f64,
 }
 
 /// A motion and how well it fits.
@@ -51,6 +51,7 @@ struct PointAndFoot {
     at: [f64; 2],
     normal: [f64; 2],
     across: f64,
+    length: f64,
     weight: f64,
 }
 
@@ -62,65 +63,66 @@ impl NominalFit<'_> {
     pub fn of_parts(&self, start: Station) -> Result<FittedMotion, String> {
         let own: f64 =
             self.nominal.lengths().zip(self.parts).filter(|(_, part)| **part).map(|(l, _)| l).sum();
-        let fitted = self.settled(start, |_, foot, across| self.parts[foot] && across.abs() <= FARTHEST)?;
-        if fitted.length < LEAST_PART * own || own == 0.0 {
+        let near = |foot: usize, across: f64| self.parts[foot] && across.abs() <= FARTHEST;
+        let fitted = self.settled(start, near, f64::INFINITY)?;
+        if fitted.length < self.least_part * own || own == 0.0 {
             return Err(format!("{:.1} mm of its {own:.1} mm are measured", fitted.length.min(own)));
         }
         Ok(fitted)
     }
 
-    /// Finds the motion that fits all places near the nominal, from the motion that fits the parts. The places are those within three
-    /// times its residual, within [`FITS`]; they are chosen anew until the motion is settled.
+    /// Finds the motion that fits all places near the nominal, from the motion that fits the parts, by Tukey's biweight: a place
+    /// weighs the less the farther it is off, and nothing from `fits` \[mm\] on.
     ///
     /// # Errors
     /// Places that leave a motion free, or at which the fit does not settle; the text says which.
-    pub fn of_all(&self, of_parts: FittedMotion) -> Result<FittedMotion, String> {
-        let fits = (3.0 * of_parts.rms).clamp(FITS.low, FITS.high);
-        let mut fitted = of_parts;
-        for _ in 0..MOST_ROUNDS {
-            let mut chosen = vec![false; self.measured.marks.len()];
-            let near = self.pairs(&fitted.motion, &mut Vec::new(), |_, _, across| across.abs() <= fits);
-            near.iter().for_each(|pair| chosen[pair.measured] = true);
-            let next = self.settled(fitted.motion, |k, _, across| chosen[k] && across.abs() <= FARTHEST)?;
-            let moved = apart(&fitted.motion, &next.motion);
-            fitted = next;
-            if moved <= ROUND_SETTLED {
-                return Ok(fitted);
-            }
-        }
-        Err(format!("the places that fit are not settled after {MOST_ROUNDS} rounds"))
+    pub fn of_all(&self, of_parts: FittedMotion, fits: f64) -> Result<FittedMotion, String> {
+        self.settled(of_parts.motion, |_, across| across.abs() <= FARTHEST, fits)
     }
 
+    /// Repeats Gauss and Newton's step until the motion is settled. A place belongs by its foot and its distance; it weighs nothing
+    /// from `fits` \[mm\] on.
     fn settled(
         &self,
         start: Station,
-        belongs: impl Fn(usize, usize, f64) -> bool,
+        belongs: impl Fn(usize, f64) -> bool,
+        fits: f64,
     ) -> Result<FittedMotion, String> {
         let (mut motion, mut feet) = (start, Vec::new());
-        for _ in 0..MOST_PASSES {
-            let pairs = self.pairs(&motion, &mut feet, &belongs);
+        let mut chosen: Option<Vec<bool>> = None;
+        for pass in 0..MOST_PASSES {
+            let pairs = self.pairs(&motion, &mut feet, &belongs, chosen.as_deref(), fits);
             let Some(step) = step(&pairs) else {
                 return Err("what is measured of it leaves the profile free to move".into());
             };
             let next = motion.placed_by(&step);
             let moved = apart(&motion, &next);
             motion = next;
-            if moved <= SETTLED {
-                let pairs = self.pairs(&motion, &mut feet, &belongs);
-                let length: f64 = pairs.iter().map(|pair| pair.weight).sum();
-                let squares: f64 = pairs.iter().map(|pair| pair.weight * pair.across.powi(2)).sum();
-                return Ok(FittedMotion { motion, rms: (squares / length).sqrt(), length });
+            if chosen.is_none() && (moved <= CHOSEN || 2 * pass >= MOST_PASSES) {
+                let mut own = vec![false; self.measured.marks.len()];
+                pairs.iter().for_each(|pair| own[pair.measured] = true);
+                chosen = Some(own);
+            } else if moved <= SETTLED {
+                let pairs = self.pairs(&motion, &mut feet, &belongs, chosen.as_deref(), fits);
+                let sum = |of: fn(&PointAndFoot) -> f64| pairs.iter().map(of).sum::<f64>();
+                let squares = sum(|pair| pair.weight * pair.across * pair.across);
+                let rms = (squares / sum(|pair| pair.weight)).sqrt();
+                let near = pairs.iter().filter(|pair| pair.weight > 0.0);
+                return Ok(FittedMotion { motion, rms, length: near.map(|pair| pair.length).sum() });
             }
         }
         Err(format!("the fit is not settled after {MOST_PASSES} passes"))
     }
 
-    /// Returns the places that belong, under a motion. `feet` are those of the last motion; the first search is over all marks.
+    /// Returns the places that belong, under a motion, or those that are chosen. `feet` are those of the last motion; the first search
+    /// is over all marks.
     fn pairs(
         &self,
         motion: &Station,
         feet: &mut Vec<usize>,
-        belongs: impl Fn(usize, usize, f64) -> bool,
+        belongs: impl Fn(usize, f64) -> bool,
+        chosen: Option<&[bool]>,
+        fits: f64,
     ) -> Vec<PointAndFoot> {
         let nominal = &self.nominal.marks;
         let moved = self.measured.placed(motion);
@@ -128,21 +130,27 @@ impl NominalFit<'_> {
             feet.extend(moved.marks.iter().map(|mark| nearest(nominal, &mark.station)));
         }
         let mut pairs = Vec::new();
-        for (k, (mark, weight)) in moved.marks.iter().zip(self.measured.lengths()).enumerate() {
+        for (k, (mark, length)) in moved.marks.iter().zip(self.measured.lengths()).enumerate() {
             let station = mark.station;
             let Some(foot) = beside(nominal, [station.x, station.z], feet[k]) else { continue };
             feet[k] = foot.mark;
             let own = nominal[foot.mark].station;
             let along = station.cos * own.cos + station.sin * own.sin;
             let inside = foot.mark > 0 && foot.mark + 1 < nominal.len();
-            if inside && along >= ALONG && belongs(k, foot.mark, foot.across) {
+            let chosen = match chosen {
+                Some(chosen) => chosen[k],
+                None => inside && along >= ALONG && belongs(foot.mark, foot.across),
+            };
+            if chosen {
                 let at = [station.x, station.z];
+                let share = (1.0 - (foot.across / fits).powi(2)).max(0.0).powi(2);
                 pairs.push(PointAndFoot {
                     measured: k,
                     at,
                     normal: [-own.sin, own.cos],
                     across: foot.across,
-                    weight,
+                    length,
+                    weight: share * length,
                 });
             }
         }

@@ -26,6 +26,24 @@ impl FoundValues {
         }
     }
 
+    /// Notes that quantities cannot be had.
+    pub fn lack(&mut self, quantities: &[Quantity], why: &str) {
+        quantities.iter().for_each(|quantity| self.put(*quantity, Err(why.to_owned())));
+    }
+
+    /// Takes over what another search has found.
+    pub fn with(mut self, other: Self) -> Self {
+        for quantity in Quantity::ALL {
+            if let Some(value) = other.values[quantity as usize] {
+                self.put(quantity, Ok(value));
+            }
+        }
+        for (why, quantities) in other.missing {
+            self.lack(&quantities, &why);
+        }
+        self
+    }
+
     pub fn values(&self) -> [Option<f64>; Quantity::ALL.len()] {
         self.values
     }

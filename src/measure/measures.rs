@@ -2,8 +2,12 @@
 
 use super::align::Alignment;
 use super::quantity::Quantity;
+use crate::measured::StatedValue;
 use crate::measured::noise::Spread;
 use crate::profile::Side;
+
+/// Difference \[mm\] of a value from that which its file states above which it is a finding.
+const MOST_OFF: f64 = 0.1;
 
 /// What was measured of a profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,13 +48,31 @@ impl Measures {
         self
     }
 
+    /// Compares the values with those that the file states; a difference above 0.1 mm is a finding.
+    #[must_use]
+    pub fn compared(mut self, stated: &[StatedValue]) -> Self {
+        for StatedValue { key, value, line } in stated {
+            let quantity = Quantity::stated_as(key).filter(|quantity| quantity.side() == self.side);
+            let Some((quantity, own)) = quantity.and_then(|of| Some((of, self.value(of)?))) else { continue };
+            let off = own - value;
+            if off.abs() > MOST_OFF {
+                self.findings.push(format!(
+                    "line {line}: the file states {key} = {value} mm, and {} is {own:.3}: {off:+.3} mm",
+                    quantity.key()
+                ));
+            }
+        }
+        self
+    }
+
     /// Returns a value in its unit; `None` where it cannot be had.
     pub fn value(&self, quantity: Quantity) -> Option<f64> {
         self.values[quantity as usize]
     }
 
-    /// Returns the largest change of a value if the profile is moved by 0.1 mm, or turned by 0.1° about the tread at X = 0 or the top
-    /// of rail. `None` where such a motion takes the quantity away.
+    /// Returns how far a value may be off, a third of the largest error: its largest change if the profile is moved by 0.1 mm, or turned
+    /// by 0.1° about the tread at X = 0 or the top of rail, or lies as the fit on the nominal has it; and twice the standard deviation
+    /// that the noise of the points gives it. `None` where such a motion takes the quantity away.
     pub fn if_off(&self, quantity: Quantity) -> Option<f64> {
         self.if_off[quantity as usize]
     }

@@ -1,18 +1,26 @@
 //! Measures one profile: aligned, as it is, and moved as far as an alignment may be off.
 
 use super::align::{Aligned, align};
+use super::better::{self, Rival};
+use super::curve::MarkedCurve;
 use super::found::FoundValues;
 use super::measures::Measures;
-use super::nominal::Nominal;
-use super::options::MeasureOptions;
+use super::nominal::{Nominal, sized};
+use super::options::{Align, MeasureOptions};
 use super::quantity::Quantity;
 use super::{rail, wheel};
 use crate::error::Result;
+use crate::measured::noise::Deviates;
 use crate::profile::{Profile, Side, Station};
 
 /// Moves \[mm\] and turn \[rad\], 0.1°, by which an alignment may be off.
 const OFF: f64 = 0.1;
 const TURNED_OFF: f64 = OFF * std::f64::consts::PI / 180.0;
+
+/// Number and seed of samples of the points' own noise, and how many standard deviations are its share of a value's uncertainty.
+const SAMPLES: u64 = 20;
+const SEED: u64 = 1;
+const DEVIATIONS: f64 = 2.0;
 
 /// Gain of metal \[mm\] on a tread or crown above which the alignment is doubted: more than tolerances of new profiles.
 const MOST_GAINED: f64 = 0.5;
@@ -48,55 +56,217 @@ pub fn measure(
         Ok(nominal) => nominal,
         Err(why) => return Ok(Measures::none(side, format!("in the nominal: {why}"))),
     };
-    Ok(match laid(profile, side, nominal.as_ref(), options) {
-        Ok(laid) => laid.measures(side, options),
+    let curve = match sized(profile) {
+        Ok(curve) => curve,
+        Err(why) => return Ok(Measures::none(side, why)),
+    };
+    Ok(match laid(&curve, side, nominal.as_ref(), options) {
+        Ok(laid) => laid.beside_rival(&curve).measures(&curve, options),
         Err(why) => Measures::none(side, why),
     })
 }
 
-/// An aligned profile with the nominal that it is aligned on, if there is one.
+/// A profile in its own axes, in which all is measured that needs no nominal, and aligned on its nominal, where wear is measured.
 pub(super) struct AlignedProfile<'a> {
-    pub aligned: Aligned,
-    pub nominal: Option<&'a Nominal<'a>>,
-    /// Why it lies in its own axes though there is a nominal.
+    side: Side,
+    own: std::result::Result<Aligned, String>,
+    on_nominal: Option<(Aligned, &'a Nominal<'a>)>,
+    /// Why there is no wear though there is a nominal.
     lost: Option<String>,
+    /// A built-in profile that fits as well as the nominal.
+    rival: Option<Rival>,
+    /// A fit on the nominal that gives no wear, but shows how the profile lies.
+    shown: Option<Aligned>,
 }
 
-/// Aligns a profile. Where its nominal does not help, the profile stays in its own axes, and what needs no nominal is measured.
+/// Aligns a profile. Where its nominal does not help, what needs no nominal is measured.
 pub(super) fn laid<'a>(
-    profile: &Profile,
+    curve: &MarkedCurve,
     side: Side,
     nominal: Option<&'a Nominal<'a>>,
     options: &MeasureOptions,
 ) -> std::result::Result<AlignedProfile<'a>, String> {
-    match align(profile, side, nominal, options) {
-        Ok(aligned) => Ok(AlignedProfile { aligned, nominal, lost: None }),
-        Err(why) => match nominal.and_then(|_| alone(profile, side, options)) {
-            Some(aligned) => {
-                let lost = Some(format!("{why}: no wear, the rest in its own axes"));
-                Ok(AlignedProfile { aligned, nominal: None, lost })
+    let own = alone(curve, side, nominal.is_some(), options);
+    let (mut on_nominal, mut lost, mut shown) = (None, None, None);
+    if let Some(nominal) = nominal {
+        match align(curve, side, Some(nominal), options) {
+            Err(why) => lost = Some(why),
+            Ok(aligned) if aligned.refused.is_none() => on_nominal = Some((aligned, nominal)),
+            Ok(aligned) => {
+                lost.clone_from(&aligned.refused);
+                shown = Some(aligned).filter(|aligned| aligned.parts_fit);
             }
-            None => Err(why),
-        },
+        }
     }
+    match (&own, &on_nominal) {
+        (Err(why), None) => Err(lost.unwrap_or_else(|| why.clone())),
+        _ => Ok(AlignedProfile { side, own, on_nominal, lost, rival: None, shown }),
+    }
+}
+
+/// Aligns a profile without its nominal, in the axes of its file or by its flange back: no fit moves what is measured there.
+fn alone(
+    curve: &MarkedCurve,
+    side: Side,
+    nominal: bool,
+    options: &MeasureOptions,
+) -> std::result::Result<Aligned, String> {
+    let align_by = match options.align {
+        Some(Align::None | Align::Back) => options.align,
+        Some(Align::TreadPoint) if nominal => Some(Align::Back),
+        _ => None,
+    };
+    align(curve, side, None, &MeasureOptions { align: align_by, unworn: Vec::new(), ..options.clone() })
 }
 
 impl AlignedProfile<'_> {
-    fn measures(self, side: Side, options: &MeasureOptions) -> Measures {
-        let Self { aligned, nominal, lost } = self;
-        let found = at(&aligned, side, nominal, options, &Station::AXES);
-        let if_off = if_off(&aligned, side, nominal, options, &found);
-        let doubts = aligned.alignment.doubt.iter().cloned().chain(gains(found.values()));
-        let findings = lost.into_iter().chain(doubts).chain(found.findings()).collect();
-        let alignment = Some(aligned.alignment);
+    /// Withdraws the wear if another built-in profile fits better than the nominal, and keeps one that fits as well.
+    fn beside_rival(mut self, curve: &MarkedCurve) -> Self {
+        let found = self.on_nominal.as_ref();
+        self.rival = found.and_then(|(_, nominal)| better::rival(nominal, curve, self.side));
+        if let Some(other) = self.rival.as_ref().filter(|rival| rival.is_nominal) {
+            self.lost.clone_from(&other.better);
+            self.shown = self.on_nominal.take().map(|(on, _)| on);
+        }
+        self
+    }
+
+    /// Measures the wear against a rival.
+    fn by_rival(&self, curve: &MarkedCurve, options: &MeasureOptions) -> Option<Values> {
+        let rival = self.rival.as_ref().filter(|_| self.on_nominal.is_some())?;
+        let nominal = Nominal::new(&rival.profile, self.side).ok()?;
+        Some(wear(self.side, &curve.placed(&rival.motion), &nominal, options).values())
+    }
+
+    fn measures(self, curve: &MarkedCurve, options: &MeasureOptions) -> Measures {
+        let found = self.found(options);
+        let if_off = self.if_off(curve, options, found.values());
+        let Self { side, own, on_nominal, lost, rival, .. } = self;
+        let lost = lost.map(|why| format!("{why}: no wear, the rest in its own axes"));
+        let alignments =
+            own.into_iter().map(|own| own.alignment).chain(on_nominal.map(|(on, _)| on.alignment));
+        let mut alignments: Vec<_> = alignments.collect();
+        let mut doubts: Vec<String> = alignments.iter().filter_map(|of| of.doubt.clone()).collect();
+        doubts.dedup();
+        doubts.extend(rival.filter(|_| lost.is_none()).and_then(|rival| rival.better));
+        let findings =
+            lost.into_iter().chain(doubts).chain(gains(found.values())).chain(found.findings()).collect();
+        let alignment = alignments.pop().map(|mut last| {
+            if let Some(own) = alignments.first() {
+                last.text += &format!("; without wear: {}", own.text);
+            }
+            last
+        });
         Measures { values: found.values(), if_off, alignment, findings, ..Measures::empty(side) }
+    }
+
+    /// Measures the profile as it is aligned.
+    pub(super) fn found(&self, options: &MeasureOptions) -> FoundValues {
+        self.moved(&|_, _| Station::AXES, options)
+    }
+
+    /// Measures the aligned profile after a further motion, which depends on what it is measured by and on how far its X = 0 may
+    /// be off.
+    fn moved(&self, motion: &dyn Fn(&Aligned, f64) -> Station, options: &MeasureOptions) -> FoundValues {
+        let own = match &self.own {
+            Ok(own) => own_values(own, self.side, &own.curve.placed(&motion(own, own.reach)), options),
+            Err(why) => {
+                let mut found = FoundValues::default();
+                let needed = Quantity::ALL.into_iter().filter(|of| of.side() == self.side && of.needs_back());
+                found.lack(&needed.collect::<Vec<_>>(), why);
+                found
+            }
+        };
+        let Some((on, nominal)) = &self.on_nominal else { return own };
+        own.with(wear(self.side, &on.curve.placed(&motion(on, on.reach)), nominal, options))
+    }
+
+    /// Returns how far each value is off if the profile lies otherwise: by what instruments and flange backs are off, and as the fit on
+    /// the nominal or on a rival has it; and by the noise of the points.
+    fn if_off(&self, curve: &MarkedCurve, options: &MeasureOptions, values: Values) -> Values {
+        let mut most = values.map(|value| value.map(|_| 0.0f64));
+        let mut at_most = |moved: Values, gone: bool| {
+            for ((most, value), moved) in most.iter_mut().zip(values).zip(moved) {
+                let change = moved.zip(value).map(|(moved, value)| (moved - value).abs());
+                // A quantity that is gone after the motion has no bound.
+                *most = match change {
+                    None if !gone => *most,
+                    change => most.zip(change).map(|(most, change)| most.max(change)),
+                };
+            }
+        };
+        for sign in [-1.0, 1.0] {
+            let along = |x: f64, z: f64| Station { x: sign * x, z: sign * z, ..Station::AXES };
+            let about = |on: &Aligned| turned(pivot(on, self.side, options), sign * TURNED_OFF);
+            at_most(self.moved(&|_, reach| along(OFF + reach, 0.0), options).values(), true);
+            at_most(self.moved(&|_, _| along(0.0, OFF), options).values(), true);
+            at_most(self.moved(&|on, _| about(on), options).values(), true);
+        }
+        let fit = self.on_nominal.as_ref().map(|(on, _)| on).or(self.shown.as_ref());
+        if let (Some(on), Ok(_)) = (fit, &self.own) {
+            at_most(own_values(on, self.side, &on.curve, options).values(), false);
+        }
+        if let Some(by_rival) = self.by_rival(curve, options) {
+            at_most(by_rival, false);
+        }
+        let noise = self.noise(curve, options, values);
+        for (most, noise) in most.iter_mut().zip(noise) {
+            *most = most.map(|most| most + noise);
+        }
+        most
+    }
+
+    /// Returns the share of the points' own noise in the uncertainty of each value: samples of the whole measurement but the fit.
+    fn noise(
+        &self,
+        curve: &MarkedCurve,
+        options: &MeasureOptions,
+        values: Values,
+    ) -> [f64; Quantity::ALL.len()] {
+        let (mut squares, mut counts) = ([0.0; Quantity::ALL.len()], [0u32; Quantity::ALL.len()]);
+        for number in 0..SAMPLES {
+            let Some(again) = curve.again(&mut Deviates::new(SEED, number)) else { break };
+            let own = alone(&again, self.side, self.on_nominal.is_some(), options);
+            let on_nominal =
+                self.on_nominal.as_ref().map(|(on, nominal)| (on.with(again.placed(&on.frame)), *nominal));
+            let sample =
+                AlignedProfile { side: self.side, own, on_nominal, lost: None, rival: None, shown: None };
+            let found = sample.found(options).values();
+            for (k, (value, found)) in values.into_iter().zip(found).enumerate() {
+                if let Some((value, found)) = value.zip(found) {
+                    squares[k] += (found - value).powi(2);
+                    counts[k] += 1;
+                }
+            }
+        }
+        std::array::from_fn(|k| DEVIATIONS * (squares[k] / f64::from(counts[k].max(1))).sqrt())
     }
 }
 
-/// Aligns a profile as if there were no nominal; `None` if that fails, too.
-fn alone(profile: &Profile, side: Side, options: &MeasureOptions) -> Option<Aligned> {
-    let options = MeasureOptions { align: None, unworn: Vec::new(), ..options.clone() };
-    align(profile, side, None, &options).ok()
+/// A number for each quantity that there is.
+type Values = [Option<f64>; Quantity::ALL.len()];
+
+/// Measures what needs no nominal.
+fn own_values(on: &Aligned, side: Side, curve: &MarkedCurve, options: &MeasureOptions) -> FoundValues {
+    match side {
+        Side::Wheel => wheel::measure(curve, (on.back, on.no_back.as_deref()), options),
+        Side::Rail => rail::measure(curve, options),
+    }
+}
+
+fn wear(side: Side, curve: &MarkedCurve, nominal: &Nominal, options: &MeasureOptions) -> FoundValues {
+    match side {
+        Side::Wheel => wheel::wear(curve, nominal, options),
+        Side::Rail => rail::wear(curve, nominal, options),
+    }
+}
+
+/// Returns the point about which an alignment may be turned.
+fn pivot(on: &Aligned, side: Side, options: &MeasureOptions) -> [f64; 2] {
+    match side {
+        Side::Wheel => [on.back, wheel::tread(&on.curve, on.back, options).unwrap_or(0.0)],
+        Side::Rail => on.curve.highest(1.0).map_or([0.0; 2], |top| [top.x, top.z]),
+    }
 }
 
 /// Says which wear is a gain of metal that no wheel or rail has.
@@ -109,51 +279,6 @@ fn gains(values: [Option<f64>; Quantity::ALL.len()]) -> impl Iterator<Item = Str
     gained
         .map(|(quantity, _)| quantity.key())
         .map(|key| format!("{key} is negative: another nominal, or worn parts were aligned"))
-}
-
-/// Measures an aligned profile after a further motion.
-pub(super) fn at(
-    aligned: &Aligned,
-    side: Side,
-    nominal: Option<&Nominal>,
-    options: &MeasureOptions,
-    motion: &Station,
-) -> FoundValues {
-    let curve = aligned.curve.placed(motion);
-    match side {
-        Side::Wheel => {
-            let back = (aligned.back, aligned.no_back.as_deref());
-            wheel::measure(&curve, back, nominal, options)
-        }
-        Side::Rail => rail::measure(&curve, nominal, options),
-    }
-}
-
-fn if_off(
-    aligned: &Aligned,
-    side: Side,
-    nominal: Option<&Nominal>,
-    options: &MeasureOptions,
-    found: &FoundValues,
-) -> [Option<f64>; Quantity::ALL.len()] {
-    let values = found.values();
-    let mut most = values.map(|value| value.map(|_| 0.0f64));
-    let pivot = match side {
-        Side::Wheel => [aligned.back, wheel::tread(&aligned.curve, aligned.back, options).unwrap_or(0.0)],
-        Side::Rail => aligned.curve.highest(1.0).map_or([0.0; 2], |top| [top.x, top.z]),
-    };
-    for sign in [-1.0, 1.0] {
-        let along = |x: f64, z: f64| Station { x: sign * x, z: sign * z, ..Station::AXES };
-        for motion in [along(OFF, 0.0), along(0.0, OFF), turned(pivot, sign * TURNED_OFF)] {
-            let moved = at(aligned, side, nominal, options, &motion).values();
-            for ((most, value), moved) in most.iter_mut().zip(values).zip(moved) {
-                let change = moved.zip(value).map(|(moved, value)| (moved - value).abs());
-                // A quantity that is gone after the motion has no bound.
-                *most = most.zip(change).map(|(most, change)| most.max(change));
-            }
-        }
-    }
-    most
 }
 
 /// Returns the turn about a point.

@@ -5,6 +5,7 @@
 
 mod align;
 mod average;
+mod better;
 mod curve;
 mod fit;
 mod found;
@@ -19,6 +20,7 @@ mod quantity;
 mod rail;
 mod repeats;
 mod rows;
+mod smooth;
 mod wheel;
 
 pub use align::Alignment;

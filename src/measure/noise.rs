@@ -1,14 +1,14 @@
 //! How far noise of the points spreads the quantities of a profile: seeded samples of the whole measurement.
 
 use super::measures::Measures;
-use super::measuring::{at, laid, measure};
-use super::nominal::Nominal;
+use super::measuring::{laid, measure};
+use super::nominal::{Nominal, sized};
 use super::options::MeasureOptions;
 use super::quantity::Quantity;
 use crate::error::{Error, Result, finite};
 use crate::measured::noise::{Deviates, POINT_STEP, Remeasured, Sampled, check_samples, sampled};
 use crate::measured::{CurveKind, Options};
-use crate::profile::{Profile, Side, Station};
+use crate::profile::{Profile, Side};
 
 /// Noise of the points of a profile, and how it is sampled.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,11 +95,18 @@ pub fn measure_noisy(
             return Ok(measures);
         }
     };
-    measures.spreads = spreads;
+    let all = noise.samples;
     if failed > 0 {
-        let all = noise.samples;
         measures.findings.push(format!("noise: {failed} of {all} samples cannot be measured"));
     }
+    for quantity in Quantity::ALL {
+        let have = spreads[quantity as usize].map_or(0, |spread| spread.samples);
+        if have + failed < all && measures.value(quantity).is_some() {
+            let key = quantity.key();
+            measures.findings.push(format!("noise: {} of {all} samples have no {key}", all - failed - have));
+        }
+    }
+    measures.spreads = spreads;
     Ok(measures)
 }
 
@@ -110,8 +117,7 @@ fn quantities(
     nominal: Option<&Nominal>,
     options: &MeasureOptions,
 ) -> Result<[f64; Quantity::ALL.len()]> {
-    let laid = laid(sample, side, nominal, options)
-        .map_err(|why| Error::new("", why, "a profile that can be measured", "give less noise"))?;
-    let found = at(&laid.aligned, side, laid.nominal, options, &Station::AXES);
-    Ok(found.values().map(|value| value.unwrap_or(f64::NAN)))
+    let error = |why| Error::new("", why, "a profile that can be measured", "give less noise");
+    let laid = sized(sample).and_then(|curve| laid(&curve, side, nominal, options)).map_err(error)?;
+    Ok(laid.found(options).values().map(|value| value.unwrap_or(f64::NAN)))
 }

@@ -19,6 +19,14 @@ const LARGEST: f64 = 1000.0;
 /// Sine of the inclination of an end that is the back without a doubt, 88°: a back that turns upright with 20 mm radius lies
 /// 0.01 mm farther left.
 const UPRIGHT: f64 = 0.999_390_827_019_095_7;
+const BACK_RADIUS: f64 = 20.0;
+/// Distance \[mm\] of a flange's tip from its back, and by how much that of a usual wheel is another.
+const TIP: f64 = 15.0;
+const TIPS_DIFFER: f64 = 1.0;
+/// Distances \[mm\] of a file's x = 0 from the flange back above which it is doubted, and from which it is not there: instruments
+/// touch the back, a little beside the place where it is found.
+const MOST_OFF: f64 = 0.3;
+const ELSEWHERE: f64 = 1.0;
 
 /// The flange back of a wheel.
 pub(super) struct Back {
@@ -26,6 +34,8 @@ pub(super) struct Back {
     pub x: f64,
     /// How it was found.
     pub how: String,
+    /// How far it may lie elsewhere \[mm\], besides what an instrument is put on by.
+    pub reach: f64,
     /// Why it may lie elsewhere.
     pub doubt: Option<String>,
 }
@@ -67,14 +77,36 @@ pub(super) fn sized(profile: &Profile) -> Result<MarkedCurve, String> {
     Ok(MarkedCurve::new(profile))
 }
 
-/// Returns x of the flange back in the axes of a file or a drawing: 0 if the flange's tip shows that it is there, otherwise the back
-/// itself; and how it was found.
+/// Returns x of the flange back in the axes of a file or a drawing: 0 if the flange's tip shows that it is there and no back contradicts,
+/// otherwise the back itself; and how it was found.
 pub(super) fn own_back(curve: &MarkedCurve) -> Result<Back, String> {
     let tip = curve.highest(-1.0).map_or(f64::NAN, |tip| tip.x);
-    if is_from_back(tip) {
-        return Ok(Back { x: 0.0, how: "the file's x = 0".into(), doubt: None });
+    let found = back_of(curve);
+    if !is_from_back(tip) {
+        return found;
     }
-    back_of(curve)
+    let how = "the file's x = 0".to_owned();
+    let Ok(found) = found else {
+        let doubt = Some("no flange back shows that it stands at the file's x = 0".to_owned());
+        return Ok(Back { x: 0.0, how, reach: from_tip(tip), doubt });
+    };
+    // A back that was not measured until it is upright stands so much farther left.
+    let off = (found.x - found.reach).abs();
+    let doubt = |kept: &str| {
+        let found = if found.reach > 0.0 { "where the points end" } else { "the flange back" };
+        (off > MOST_OFF).then(|| format!("the file's x = 0 lies {off:.2} mm beside {found}: X = 0 is {kept}"))
+    };
+    if off > ELSEWHERE && (found.x < 0.0 || found.doubt.is_none()) {
+        let doubt = doubt(&found.how);
+        return Ok(Back { doubt, ..found });
+    }
+    let doubt = doubt(&how);
+    Ok(Back { x: 0.0, how, reach: off + 0.5 * found.reach, doubt })
+}
+
+/// Returns how far \[mm\] the flange back may stand from X = 0 if nothing but the tip, at this distance from it, tells.
+pub(super) fn from_tip(tip: f64) -> f64 {
+    (tip - TIP).abs() + TIPS_DIFFER
 }
 
 /// Tells whether a flange's tip at this distance \[mm\] from x = 0 shows that x = 0 is the flange back.
@@ -97,7 +129,7 @@ pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
         // Marks are at equal distances nearly, so that the mean is the line at its middle.
         let x = line.iter().map(|at| at.x).sum::<f64>() / line.len() as f64;
         let how = format!("the flange back at x = {x:.3}, a line over {height:.1} mm");
-        return Ok(Back { x, how, doubt: None });
+        return Ok(Back { x, how, reach: 0.0, doubt: None });
     }
     let leftmost = back.marks.iter().map(|mark| mark.station).min_by(|a, b| a.x.total_cmp(&b.x));
     match leftmost {
@@ -106,7 +138,8 @@ pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
             let doubt = (at.sin > -UPRIGHT).then(|| {
                 format!("X = 0 is the leftmost point, inclined by {angle:.0}°: the flange back may lie farther left")
             });
-            Ok(Back { x: at.x, how: format!("the leftmost point, x = {:.3}", at.x), doubt })
+            let reach = BACK_RADIUS * (1.0 + at.sin);
+            Ok(Back { x: at.x, how: format!("the leftmost point, x = {:.3}", at.x), reach, doubt })
         }
         Some(at) => Err(none(format!(
             "the profile begins at x = {:.3} mm, inclined by {:.0}°, less than 75°",

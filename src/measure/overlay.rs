@@ -2,7 +2,7 @@
 
 use super::align::{self, Alignment};
 use super::curve::MarkedCurve;
-use super::nominal::Nominal;
+use super::nominal::{Nominal, sized};
 use super::options::MeasureOptions;
 use crate::error::{Error, Result};
 use crate::profile::{Profile, Side, Station};
@@ -41,7 +41,9 @@ pub fn overlay(
     let advice = "choose another alignment, or give the whole profile";
     let error = |why: String| Error::new(&profile.name, why, "a profile that can be aligned", advice);
     let nominal = Nominal::named(nominal, side)?;
-    let aligned = align::align(profile, side, Some(&nominal), options).map_err(error)?;
+    let curve = sized(profile);
+    let aligned =
+        curve.and_then(|curve| align::align(&curve, side, Some(&nominal), options)).map_err(error)?;
     let points = |curve: &MarkedCurve| {
         let last = curve.marks.len().saturating_sub(1);
         let drawn = curve.marks.iter().enumerate().filter(|(k, _)| k % DRAWN == 0 || *k == last);

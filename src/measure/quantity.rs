@@ -60,6 +60,27 @@ quantities! {
 }
 
 impl Quantity {
+    /// Returns the quantity of the name that instruments' files have.
+    pub(super) fn stated_as(name: &str) -> Option<Self> {
+        Some(match name {
+            "Sd" => Self::FlangeThickness,
+            "Sh" => Self::FlangeHeight,
+            "qR" => Self::Qr,
+            "W1" => Self::W1,
+            "W2" => Self::W2,
+            "W3" => Self::W3,
+            _ => return None,
+        })
+    }
+
+    /// Tells whether a wheel's X = 0 decides it.
+    pub(super) fn needs_back(self) -> bool {
+        matches!(
+            self,
+            Self::FlangeHeight | Self::FlangeThickness | Self::Qr | Self::FlangeWidth | Self::Hollow
+        )
+    }
+
     /// Returns the key of the quantity's largest change if the alignment is off.
     pub fn key_if_off(self) -> String {
         format!("{}_if_off", self.key())

@@ -23,6 +23,8 @@ const ABOVE_END: f64 = 0.01;
 /// Farthest distance \[mm\] of a worn gauge corner from the nominal one.
 const FARTHEST: f64 = 25.0;
 
+const EVERYWHERE: Interval = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+
 /// A running head with its top, and the groove beside it.
 struct Head<'a> {
     whole: &'a MarkedCurve,
@@ -43,6 +45,7 @@ impl<'a> Head<'a> {
                 top.x
             ));
         }
+        let top = top.known().map_err(|why| format!("no top of rail: {why}"))?;
         Ok(Self { whole, curve, top, groove })
     }
 
@@ -50,16 +53,31 @@ impl<'a> Head<'a> {
     fn face(&self, z: f64) -> Result<f64, String> {
         let all = self.curve.at_z(z);
         let face = all.iter().rfind(|place| place.mark <= self.top.mark && place.x <= self.top.x);
-        face.map(|place| place.x)
-            .ok_or_else(|| format!("no gauge face {:.3} mm below the top of rail", self.top.z - z))
+        face.ok_or_else(|| format!("no gauge face {:.3} mm below the top of rail", self.top.z - z))
+            .and_then(|place| place.known().map_err(|why| format!("no gauge face: {why}")))
+            .map(|place| place.x)
     }
 
     /// Returns x of the keeper's face at a height \[mm\]; `None` without a groove.
     fn keeper(&self, z: f64) -> Option<Result<f64, String>> {
         let groove = self.groove?;
         let all = self.whole.at_z(z);
-        let face = all.iter().rfind(|place| place.mark < groove).map(|place| place.x);
-        Some(face.ok_or_else(|| format!("no keeper {:.3} mm below the top of rail", self.top.z - z)))
+        let face = all.iter().rfind(|place| place.mark < groove);
+        let face = face.ok_or_else(|| format!("no keeper {:.3} mm below the top of rail", self.top.z - z));
+        let known = face.and_then(|place| place.known().map_err(|why| format!("no keeper: {why}")));
+        Some(known.map(|place| place.x))
+    }
+
+    /// Returns the depth \[mm\] of the groove's lowest point below the top.
+    fn depth(&self) -> Result<f64, String> {
+        let bottom = self.curve.marks.first().map_or(f64::NAN, |mark| mark.station.z);
+        let beside = self.groove.unwrap_or(0).checked_sub(1);
+        let gap = beside.is_some_and(|k| self.whole.unknown[k]) || self.curve.unknown.first() == Some(&true);
+        if gap {
+            Err("the points of the groove have a gap at its bottom".into())
+        } else {
+            Ok(self.top.z - bottom)
+        }
     }
 
     /// Returns the lowest height \[mm\] that the gauge and the field side both reach.
@@ -80,6 +98,9 @@ impl<'a> Head<'a> {
         let (Some(a), Some(b)) = (left, right) else {
             return Err("no faces at both sides of the head".into());
         };
+        if self.curve.up_to(b.mark + 1).from(a.mark).has_gap([0.0, 1.0], EVERYWHERE) {
+            return Err("the points of the head have a gap".into());
+        }
         let inner = self.curve.marks[a.mark + 1..=b.mark].iter().map(|mark| [mark.station.x, mark.station.z]);
         let ring: Vec<[f64; 2]> = [[a.x, a.z]].into_iter().chain(inner).chain([[b.x, b.z]]).collect();
         Ok(ring
@@ -89,51 +110,45 @@ impl<'a> Head<'a> {
     }
 }
 
-/// Measures a rail.
-pub(super) fn measure(
-    curve: &MarkedCurve,
-    nominal: Option<&Nominal>,
-    options: &MeasureOptions,
-) -> FoundValues {
+/// Measures a rail in any axes.
+pub(super) fn measure(curve: &MarkedCurve, options: &MeasureOptions) -> FoundValues {
     let mut found = FoundValues::default();
     let head = match Head::new(curve) {
         Ok(head) => head,
         Err(why) => {
-            for quantity in [Quantity::CrownRadius, Quantity::SideFaceAngle, Quantity::Lip] {
-                found.put(quantity, Err(why.clone()));
-            }
+            found.lack(&[Quantity::CrownRadius, Quantity::SideFaceAngle, Quantity::Lip], &why);
             return found;
         }
     };
     let level = head.top.z - options.gauge_level;
     found.put(Quantity::SideFaceAngle, side_face_angle(&head, level));
-    found.put(Quantity::Lip, head.face(level).map(|_| lip(&head)));
+    found.put(Quantity::Lip, head.face(level).and_then(|_| lip(&head)));
     if let Some(keeper) = head.keeper(level) {
         found.put(Quantity::GrooveWidth, keeper.and_then(|keeper| Ok(head.face(level)? - keeper)));
-        let bottom = head.curve.marks.first().map_or(f64::NAN, |mark| mark.station.z);
-        found.put(Quantity::GrooveDepth, Ok(head.top.z - bottom));
+        found.put(Quantity::GrooveDepth, head.depth());
     }
-    let drawn =
-        nominal.map(|nominal| Head::new(&nominal.curve).map_err(|why| format!("in the nominal: {why}")));
-    let about = drawn.as_ref().and_then(|drawn| drawn.as_ref().ok()).map_or(head.top.x, |drawn| drawn.top.x);
-    found.put(Quantity::CrownRadius, crown_radius(&head, about));
-    match drawn {
-        None => {}
-        Some(Ok(drawn)) => wear(&mut found, &head, &drawn, options),
-        Some(Err(why)) => {
-            for quantity in [Quantity::W1, Quantity::W2, Quantity::W3, Quantity::HeadAreaLost] {
-                found.put(quantity, Err(why.clone()));
-            }
+    found.put(Quantity::CrownRadius, crown_radius(&head));
+    found
+}
+
+/// Measures the wear of a rail in the axes of its nominal.
+pub(super) fn wear(curve: &MarkedCurve, nominal: &Nominal, options: &MeasureOptions) -> FoundValues {
+    let mut found = FoundValues::default();
+    let drawn = Head::new(&nominal.curve).map_err(|why| format!("in the nominal: {why}"));
+    match Head::new(curve).and_then(|head| Ok((head, drawn?))) {
+        Ok((head, drawn)) => lost(&mut found, &head, &drawn, options),
+        Err(why) => {
+            found.lack(&[Quantity::W1, Quantity::W2, Quantity::W3, Quantity::HeadAreaLost], &why);
         }
     }
     found
 }
 
 /// Measures what a head has lost of the nominal one.
-fn wear(found: &mut FoundValues, head: &Head, drawn: &Head, options: &MeasureOptions) {
-    let crown = head.curve.at_x(drawn.top.x).iter().map(|place| place.z).fold(f64::NEG_INFINITY, f64::max);
-    let none = || format!("no points over the nominal's top, x = {:.3} mm", drawn.top.x);
-    found.put(Quantity::W1, if crown.is_finite() { Ok(drawn.top.z - crown) } else { Err(none()) });
+fn lost(found: &mut FoundValues, head: &Head, drawn: &Head, options: &MeasureOptions) {
+    let over = head.curve.at_x(drawn.top.x).into_iter().max_by(|a, b| a.z.total_cmp(&b.z));
+    let crown = over.ok_or_else(|| format!("no points over the nominal's top, x = {:.3} mm", drawn.top.x));
+    found.put(Quantity::W1, crown.and_then(|place| Ok(drawn.top.z - place.known()?.z)));
     let top = if options.gauge_from == GaugeFrom::Measured { head.top.z } else { drawn.top.z };
     let level = top - options.gauge_level;
     let in_nominal = |why: String| format!("in the nominal: {why}");
@@ -172,20 +187,24 @@ fn w3(head: &Head, drawn: &Head) -> Result<f64, String> {
     let (x, z) = (a.x + share * (b.x - a.x), a.z + share * (b.z - a.z));
     let depth = |head: &Head| {
         let all = head.curve.crossings([FRAC_1_SQRT_2; 2], along(x, z)).into_iter();
-        let depths = all.map(|place| inside(place.x, place.z) - inside(x, z));
-        depths.filter(|depth| depth.abs() <= FARTHEST).min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        let depths = all.map(|place| (inside(place.x, place.z) - inside(x, z), place));
+        let near = depths.filter(|(depth, _)| depth.abs() <= FARTHEST);
+        let nearest = near.min_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+        let none = "no points on the 45° line through the nominal's gauge corner at";
+        let (depth, place) = nearest.ok_or_else(|| format!("{none} ({x:.3}, {z:.3}) mm"))?;
+        place.known().map(|_| depth)
     };
-    let depths = depth(head).zip(depth(drawn)).map(|(own, nominal)| own - nominal);
-    depths.ok_or_else(|| {
-        format!("no points on the 45° line through the nominal's gauge corner at ({x:.3}, {z:.3}) mm")
-    })
+    Ok(depth(head)? - depth(drawn)?)
 }
 
-/// Returns the radius \[mm\] of the circle that fits the crown about x = `about`; an error if the crown does not bulge up.
+/// Returns the radius \[mm\] of the circle that fits the crown about its top; an error if the crown does not bulge up.
 ///
 /// Method: κ(x² + z²)/2 + bx + a = z by least squares. The residual is the distance from a nearly level arc times 1 − κz.
-fn crown_radius(head: &Head, about: f64) -> Result<f64, String> {
-    let curve = &head.curve;
+fn crown_radius(head: &Head) -> Result<f64, String> {
+    let (curve, about) = (&head.curve, head.top.x);
+    if curve.has_gap([1.0, 0.0], Interval::symmetric(CROWN) + about) {
+        return Err("the points of the crown have a gap".into());
+    }
     let inside = || {
         let all = curve.marks.iter().zip(curve.lengths());
         all.map(|(mark, weight)| (mark.station.x - about, mark.station.z - head.top.z, weight))
@@ -215,6 +234,10 @@ fn crown_radius(head: &Head, about: f64) -> Result<f64, String> {
 /// Returns the angle \[deg\] of a line through the gauge face, from `level` \[mm\] down, against the vertical; + if it widens downwards.
 fn side_face_angle(head: &Head, level: f64) -> Result<f64, String> {
     head.face(level)?;
+    let face = head.curve.up_to(head.top.mark);
+    if face.has_gap([0.0, 1.0], Interval::new(level - FACE, level)) {
+        return Err("the points of the gauge face have a gap".into());
+    }
     let all = head.curve.marks.iter().zip(head.curve.lengths()).take(head.top.mark);
     let own: Vec<(f64, f64, f64)> = all
         .map(|(mark, weight)| (mark.station.x, mark.station.z - level, weight))
@@ -235,12 +258,16 @@ fn side_face_angle(head: &Head, level: f64) -> Result<f64, String> {
 }
 
 /// Returns how far \[mm\] the gauge face recedes below its outermost point.
-fn lip(head: &Head) -> f64 {
+fn lip(head: &Head) -> Result<f64, String> {
+    let range = Interval::new(head.top.z - LIP_DEPTH, head.top.z);
+    if head.curve.up_to(head.top.mark).has_gap([0.0, 1.0], range) {
+        return Err("the points of the gauge face have a gap".into());
+    }
     let (mut outermost, mut lip) = (f64::INFINITY, 0.0f64);
     let face = head.curve.marks.iter().take(head.top.mark).rev();
     for mark in face.take_while(|mark| head.top.z - mark.station.z <= LIP_DEPTH) {
         outermost = outermost.min(mark.station.x);
         lip = lip.max(mark.station.x - outermost);
     }
-    lip
+    Ok(lip)
 }

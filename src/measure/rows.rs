@@ -158,7 +158,7 @@ pub fn table(rows: &[MeasureRow], columns: RowColumns) -> String {
     }
     let mut text = below_each_other(&lines);
     if !shown.is_empty() {
-        text += "± is the largest change if the profile lay 0.1 mm or 0.1° otherwise\n";
+        text += "± is how far a value may be off: if the profile lay 0.1 mm or 0.1° otherwise, or as a fit has it, and by the noise of its points\n";
     }
     for row in rows {
         text += &notes(row, columns);

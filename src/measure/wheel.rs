@@ -5,6 +5,7 @@ use super::found::FoundValues;
 use super::nominal::Nominal;
 use super::options::MeasureOptions;
 use super::quantity::Quantity;
+use crate::numerics::interval::Interval;
 
 /// Least length \[mm\] of tread beyond X = 70 over which hollow wear has a meaning.
 const LEAST_TREAD: f64 = 20.0;
@@ -15,7 +16,6 @@ const TREAD: f64 = 0.5;
 pub(super) fn measure(
     curve: &MarkedCurve,
     (back, no_back): (f64, Option<&str>),
-    nominal: Option<&Nominal>,
     options: &MeasureOptions,
 ) -> FoundValues {
     let mut found = FoundValues::default();
@@ -33,12 +33,18 @@ pub(super) fn measure(
         face(options.width_level)
             .and_then(|x| Ok(x - behind(curve, tip.clone()?, tread.clone()? - options.width_level)?)),
     );
-    found.put(Quantity::Hollow, tip.clone().and_then(|tip| hollow(curve, tip, back, options)));
-    if let Some(nominal) = nominal {
-        let at = self::tread(&nominal.curve, nominal.back, options);
-        found.put(Quantity::TreadWear, tread.clone().and_then(|z| Ok(z - at?)));
-        found.put(Quantity::TreadWearMax, most_worn(curve, nominal, options));
-    }
+    let begin = |tip: &CurvePoint| face(options.flange_level).unwrap_or(tip.x);
+    let hollow = tip.clone().and_then(|tip| hollow(curve, tip, begin(&tip), back, options));
+    found.put(Quantity::Hollow, hollow);
+    found
+}
+
+/// Measures the wear of a wheel in the axes of its nominal.
+pub(super) fn wear(curve: &MarkedCurve, nominal: &Nominal, options: &MeasureOptions) -> FoundValues {
+    let mut found = FoundValues::default();
+    let at = tread(&nominal.curve, nominal.back, options).map_err(|why| format!("in the nominal: {why}"));
+    found.put(Quantity::TreadWear, tread(curve, nominal.back, options).and_then(|z| Ok(z - at?)));
+    found.put(Quantity::TreadWearMax, most_worn(curve, nominal, options));
     found
 }
 
@@ -47,10 +53,9 @@ pub(super) fn measure(
 /// # Errors
 /// No points there.
 pub(super) fn tread(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<f64, String> {
-    let lowest =
-        curve.at_x(back + options.tread_at).iter().map(|place| place.z).fold(f64::INFINITY, f64::min);
-    if lowest.is_finite() {
-        return Ok(lowest);
+    let places = curve.at_x(back + options.tread_at);
+    if let Some(lowest) = places.iter().min_by(|a, b| a.z.total_cmp(&b.z)) {
+        return lowest.known().map(|place| place.z).map_err(|why| format!("no tread: {why}"));
     }
     let [from, to] = curve.extent().map(|x| x - back).ends();
     Err(format!("no tread at X = {} mm: the points go from X = {from:.3} to {to:.3}", options.tread_at))
@@ -67,7 +72,7 @@ fn tip(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<Curve
         let at = options.tread_at;
         return Err(format!("no flange tip: the points are lowest at X = {x:.3} mm, beyond X = {at}"));
     }
-    Ok(tip)
+    tip.known().map_err(|why| format!("no flange tip: {why}"))
 }
 
 /// Returns x of the flange's face at a height \[mm\]: the nearest to the tread.
@@ -76,8 +81,9 @@ fn face(curve: &MarkedCurve, tip: CurvePoint, z: f64, tread_x: f64) -> Result<f6
     let beyond = |place: &&CurvePoint| place.mark >= tip.mark && place.x > tip.x && place.x < tread_x;
     all.iter()
         .rfind(beyond)
-        .map(|place| place.x)
         .ok_or_else(|| format!("no flange face {:.3} mm over the flange's tip", z - tip.z))
+        .and_then(|place| place.known().map_err(|why| format!("no flange face: {why}")))
+        .map(|place| place.x)
 }
 
 /// Returns x of the flange back at a height \[mm\].
@@ -85,8 +91,9 @@ fn behind(curve: &MarkedCurve, tip: CurvePoint, z: f64) -> Result<f64, String> {
     let all = curve.at_z(z);
     all.iter()
         .rfind(|place| place.mark <= tip.mark && place.x < tip.x)
-        .map(|place| place.x)
         .ok_or_else(|| format!("no flange back {:.3} mm over the flange's tip", z - tip.z))
+        .and_then(|place| place.known().map_err(|why| format!("no flange back: {why}")))
+        .map(|place| place.x)
 }
 
 fn qr(
@@ -100,12 +107,21 @@ fn qr(
     Ok(thickness - (upper - back))
 }
 
-/// Returns the largest rise of Y towards the field side \[mm\] on the way from the tip.
-fn hollow(curve: &MarkedCurve, tip: CurvePoint, back: f64, options: &MeasureOptions) -> Result<f64, String> {
+/// Returns the largest rise of Y towards the field side \[mm\] on the way from the tip; the tread begins at x = `face`.
+fn hollow(
+    curve: &MarkedCurve,
+    tip: CurvePoint,
+    face: f64,
+    back: f64,
+    options: &MeasureOptions,
+) -> Result<f64, String> {
     let end = curve.extent().high - back;
     if end < options.tread_at + LEAST_TREAD {
         let least = options.tread_at + LEAST_TREAD;
         return Err(format!("the tread is measured to X = {end:.3} mm only, and hollow wear needs {least}"));
+    }
+    if curve.has_gap([1.0, 0.0], Interval::new(face, f64::INFINITY)) {
+        return Err("the points of the tread have a gap".into());
     }
     let (mut top, mut rise) = (tip.z, 0.0f64);
     for mark in curve.marks.iter().skip(tip.mark + 1) {
@@ -124,6 +140,9 @@ fn most_worn(curve: &MarkedCurve, nominal: &Nominal, options: &MeasureOptions) -
     let measured = self::tip(curve, nominal.back, options).map_or(0, |tip| tip.mark);
     let surface = curve.from(measured);
     let mut pairs = surface.marks.windows(2).peekable();
+    if curve.has_gap([1.0, 0.0], Interval::new(from, own.extent().high)) {
+        return Err("the points of the tread have a gap".into());
+    }
     let mut most = f64::NEG_INFINITY;
     for mark in own.marks.iter().skip(tip.mark) {
         let at = mark.station;

@@ -39,6 +39,7 @@ pub use place::{Step, Transform};
 pub use read::format::Format;
 pub use read::points::{
     ColumnChoice, DesignElement, ElementShape, Gap, MOST_ELEMENTS, MOST_POINTS, Note, Point, Points,
+    StatedValue,
 };
 pub use read::scan::LARGEST_FILE;
 pub use read::slices::{ListedSlice, MOST_SLICES, SliceList, listed_body};
@@ -78,6 +79,9 @@ pub struct Record {
     /// Where the section was cut; `None` unless the profile is a section of slices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut: Option<CutRecord>,
+    /// Values of the profile that the file states.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stated: Vec<StatedValue>,
 }
 
 /// A measured profile with its points and its record.
@@ -225,6 +229,7 @@ pub fn section(
             findings,
             elements: Vec::new(),
             diameter: None,
+            stated: Vec::new(),
             elements_alone: false,
             notes: all(|own| &own.notes),
             repairs: slices.iter().flat_map(|(_, own)| own.repairs.clone()).collect(),
@@ -263,6 +268,7 @@ struct Placed {
     points: Vec<Point>,
     elements: Vec<DesignElement>,
     diameter: Option<f64>,
+    stated: Vec<StatedValue>,
     /// Whether the file has design elements only.
     elements_alone: bool,
     notes: Vec<Note>,
@@ -332,6 +338,7 @@ fn placed(mut read: Points, side: Side, options: &Options) -> Result<Placed> {
         points,
         elements,
         diameter,
+        stated: read.stated,
         elements_alone,
         notes: read.notes,
         transform,
@@ -369,7 +376,10 @@ fn drawn(
     cut: Option<CutRecord>,
 ) -> Result<Measured> {
     let Placed { points, elements, elements_alone, .. } = placed;
-    let (segments, curve, of_curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
+    let (mut segments, curve, of_curve) = fit::curve::curve(&points, &elements, options, elements_alone)?;
+    if curve.kind != CurveKind::Elements {
+        clean::bridges::name(&mut segments, &points, &placed.findings);
+    }
     let profile = Profile::new(name, source, segments)?;
     let record = Record {
         format: placed.format,
@@ -383,6 +393,7 @@ fn drawn(
         warnings: placed.findings.into_iter().chain(of_curve).collect(),
         curve,
         cut,
+        stated: placed.stated,
     };
     Ok(Measured { profile, points, record })
 }

@@ -25,7 +25,21 @@ pub struct Segment {
     pub shape: Shape,
 }
 
+/// Label of a segment that bridges what was not measured.
+const GAP: &str = "gap";
+
 impl Segment {
+    /// Tells whether the segment bridges what was not measured: a gap between points of a file, or a point off the curve. Its curve is
+    /// no surface. It keeps the name through every motion and in files of segments.
+    pub fn is_gap(&self) -> bool {
+        self.label == GAP
+    }
+
+    /// Names the segment a bridge over what was not measured.
+    pub(crate) fn name_gap(&mut self) {
+        self.label = GAP.into();
+    }
+
     /// Makes a segment of a line or arc, without a label.
     pub fn arc(arc: Arc) -> Self {
         Self { label: String::new(), shape: Shape::Arc(arc) }

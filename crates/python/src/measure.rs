@@ -7,7 +7,7 @@ use wheelrail::measure::{
     AveragePoint, MeasureOptions, MeasureRow, PointNoise, RowColumns, average, measure, measure_noisy,
     repeated,
 };
-use wheelrail::measured::{CurveKind, Options, of_points};
+use wheelrail::measured::{CurveKind, Options, StatedValue, of_points};
 use wheelrail::{Error, Side};
 
 use crate::errors::exception;
@@ -55,7 +55,7 @@ pub(crate) fn measure_profile<'py>(
         None => measure(&own, side, nominal.as_ref(), &options),
         Some(noise) => measure_noisy(&own, side, nominal.as_ref(), &options, &noise),
     })?;
-    let measures = measures.with_diameter(profile.recorded("diameter").as_f64());
+    let measures = measures.with_diameter(profile.recorded("diameter").as_f64()).compared(&stated(profile));
     let row = MeasureRow { file: profile.profile.name.clone(), side: Some(side), measured: Ok(measures) };
     to_python(py, &row.values(RowColumns { spread, limits: None }))
 }
@@ -82,19 +82,26 @@ pub(crate) fn measure_repeats<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let options: MeasureOptions = keywords(py, "measure_repeats", options)?;
     let side = body(&profiles, nominal, side)?;
-    let diameters: Vec<Option<f64>> = profiles.iter().map(|own| own.recorded("diameter").as_f64()).collect();
+    let records = profiles.iter().map(|own| (own.recorded("diameter").as_f64(), stated(own)));
+    let records: Vec<_> = records.collect();
     let own: Vec<wheelrail::Profile> = profiles.iter().map(|profile| profile.profile.clone()).collect();
     let nominal = nominal.map(|nominal| nominal.profile.clone());
     let mean = waited(py, move |_| {
-        let measured = |(own, diameter): (&wheelrail::Profile, Option<f64>)| {
-            Ok(measure(own, side, nominal.as_ref(), &options)?.with_diameter(diameter))
+        let measured = |(own, (diameter, stated)): (&wheelrail::Profile, (Option<f64>, Vec<StatedValue>))| {
+            let measures = measure(own, side, nominal.as_ref(), &options)?;
+            Ok(measures.with_diameter(diameter).compared(&stated))
         };
-        let all = own.iter().zip(diameters).map(measured).collect::<Result<Vec<_>, Error>>()?;
+        let all = own.iter().zip(records).map(measured).collect::<Result<Vec<_>, Error>>()?;
         repeated(&all.iter().collect::<Vec<_>>())
     })?;
     let file = format!("mean of {} repeats", profiles.len());
     let row = MeasureRow { file, side: Some(side), measured: Ok(mean) };
     to_python(py, &row.values(RowColumns { spread: Some("repeats"), limits: None }))
+}
+
+/// Returns the values that the file of a profile states.
+fn stated(profile: &Profile) -> Vec<StatedValue> {
+    serde_json::from_value(profile.recorded("stated")).unwrap_or_default()
 }
 
 /// Returns how the curve of a profile was drawn through its points; by interpolation where it has none.

@@ -26,6 +26,18 @@ def test_points_become_what_a_file_of_them_becomes(tmp_path: Path) -> None:
     assert np.allclose(inches.points(), wr.Profile.from_points(x, z, side="wheel", cutoff_wavelength=5.0).points(), atol=1e-9)
 
 
+def test_what_lies_in_a_gap_has_no_value() -> None:
+    points = wr.wheel("S1002").points(0.2)
+    kept = points[(np.abs(points[:, 0] + 56.0) > 11.0) | (points[:, 1] > -14.0)]
+    for curve in ("interpolation", "smoothing"):
+        options: dict[str, Any] = {"curve": curve, "mirror": False}
+        wheel = wr.Profile.from_points(kept[:, 0], kept[:, 1], side="wheel", **options)
+        for own in (wheel, copy.deepcopy(wheel), wheel.shifted(0.0, 1.0)):
+            found = wr.measure_profile(own, wr.wheel("S1002"))
+            assert found["flange_height_mm"] is None and found["qr_mm"] is None
+            assert "gap" in found["finding"]
+
+
 def test_segments_go_both_ways() -> None:
     for profile in (wr.rail("60E1"), wr.wheel("S1002")):
         segments = profile.segments()

@@ -154,7 +154,10 @@ pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding>
     if !out.iter().any(|finding| finding.fatal) {
         out.extend(crossings(&path.course.at));
     }
-    out.extend(gaps(sound));
+    out.extend(gaps(sound).into_iter().map(|(k, step)| {
+        let found = format!("no point over {step:.2} mm up to {}", sound[k + 1].place());
+        Finding::new(Check::Gap, &sound[k], found)
+    }));
     out.extend(missing_side_face(&path.course.at, side, gauge_height));
     out
 }
@@ -209,15 +212,11 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
-fn gaps(points: &[Point]) -> Vec<Finding> {
+/// Returns the indices of points after which a long stretch has no points, and its lengths \[mm\].
+fn gaps(points: &[Point]) -> Vec<(usize, f64)> {
     let steps: Vec<f64> = points.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
     let least = GAP.max(GAP_RATIO * median(steps.clone()));
-    let wide = steps.iter().enumerate().filter(|(_, step)| **step > least);
-    wide.map(|(k, step)| {
-        let found = format!("no point over {step:.2} mm up to {}", points[k + 1].place());
-        Finding::new(Check::Gap, &points[k], found)
-    })
-    .collect()
+    steps.into_iter().enumerate().filter(|(_, step)| *step > least).collect()
 }
 
 fn missing_side_face(points: &[Point], side: Side, gauge_height: f64) -> Option<Finding> {

@@ -137,7 +137,7 @@ impl Remeasured {
 pub struct Sampled<const N: usize> {
     /// Number of samples of which nothing could be computed.
     pub failed: usize,
-    /// The spread of each quantity; `None` for a quantity that fewer than [`LEAST_SAMPLES`] samples have.
+    /// The spread of each quantity; `None` for a quantity that fewer than half of [`LEAST_SAMPLES`] samples have.
     pub spreads: [Option<Spread>; N],
 }
 

@@ -12,7 +12,7 @@ const INSIDE: f64 = 0.95;
 /// Shares of the samples below the ends of an interval: 95 % lie between them.
 const ENDS: [f64; 2] = [0.025, 0.975];
 
-/// Least number of samples: of fewer not even one lies beyond each end of the interval.
+/// Least number of samples that may be asked for: of fewer not even one lies beyond each end of the interval. Some of them may be lost.
 pub const LEAST_SAMPLES: usize = 40;
 
 /// How far a quantity spreads over samples or measurements, each number with its standard error from their number.
@@ -39,10 +39,10 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Finds the spread of samples; those that are not finite are left out. `None` for fewer than [`LEAST_SAMPLES`].
+    /// Finds the spread of samples; those that are not finite are left out. `None` for fewer than half of [`LEAST_SAMPLES`].
     pub fn of(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = samples.into_iter().filter(|value| value.is_finite()).collect();
-        if values.len() < LEAST_SAMPLES {
+        if 2 * values.len() < LEAST_SAMPLES {
             return None;
         }
         values.sort_by(f64::total_cmp);

@@ -14,10 +14,14 @@
 //! `MPDk=A x y radius from to` (degrees, counter-clockwise) and `MPDk=L x y x y`.
 
 use super::dialect::is_missing;
-use super::points::{ElementShape, Points};
+use super::points::{ElementShape, Points, StatedValue};
 use super::scan::{Line, clipped, is_number, lines, unquoted};
 use crate::error::Result;
 use crate::measured::Format;
+
+/// Values that instruments write beside their points, and those of the line that old files have of them.
+const STATED: [&str; 6] = ["Sd", "Sh", "qR", "W1", "W2", "W3"];
+const OLD_STATED: &str = "(Sd/Sh/qR)";
 
 const COMMENTS: [char; 4] = ['"', '!', '%', '#'];
 
@@ -44,6 +48,7 @@ struct MiniProfHeader {
     element_count: Option<(usize, usize)>,
     /// Value of `DiameterTaperline` \[mm\]; instruments without a gauge for it write 0 or nothing.
     diameter: Option<f64>,
+    stated: Vec<StatedValue>,
 }
 
 #[derive(Debug)]
@@ -66,6 +71,9 @@ pub(in crate::measured) fn read(text: &str) -> Result<Points> {
     let points = Points::new(Format::MiniProf, Some(1.0));
     let in_data = style == Style::Old;
     let mut reader = Reader { style, points, header: MiniProfHeader::default(), in_data, from: 0 };
+    if style == Style::Old {
+        reader.points.stated = old_stated(text);
+    }
     for line in lines(text).filter(|line| line.number >= old_data) {
         reader.line(line)?;
     }
@@ -97,6 +105,27 @@ fn first_old_row(text: &str) -> usize {
     let all = || (0..rows.len()).filter(|&k| numeric(k));
     let first = all().find(after_blank).or_else(|| all().find(no_key_follows));
     first.unwrap_or(rows.len()) + 1
+}
+
+/// Returns Sd, Sh and qR of an old file: three numbers before their names, on the same line or on the one before it.
+fn old_stated(text: &str) -> Vec<StatedValue> {
+    let mut before: Option<Line> = None;
+    for line in lines(text) {
+        if let Some((own, _)) = line.text.split_once(OLD_STATED) {
+            let row = if own.trim().is_empty() { before } else { Some(Line { text: own, ..line }) };
+            let numbers = row.and_then(|row| {
+                let fields = row.text.trim_matches(['"', ' ']).split_whitespace();
+                fields.map(|field| field.parse().ok()).collect::<Option<Vec<f64>>>()
+            });
+            let numbers = numbers.filter(|all| all.len() == 3 && all.iter().all(|value| value.is_finite()));
+            let named = STATED.iter().zip(numbers.unwrap_or_default());
+            let stated =
+                |(key, value): (&&str, f64)| StatedValue { key: (*key).into(), value, line: line.number };
+            return named.map(stated).collect();
+        }
+        before = Some(line);
+    }
+    Vec::new()
 }
 
 impl Reader {
@@ -170,6 +199,7 @@ impl Reader {
             point.z += header.offset[1];
         }
         self.points.diameter = self.points.diameter.or(header.diameter);
+        self.points.stated.extend(header.stated);
         let points = self.points.at.len() - self.from;
         let elements = header.elements.len();
         let counts = [("XYPoints", header.count, points), ("MPDC", header.element_count, elements)];
@@ -202,7 +232,8 @@ impl Default for MiniProfHeader {
     fn default() -> Self {
         let (elements, element_count) = (Vec::new(), None);
         let (columns, offset) = ([0, 1], [0.0; 2]);
-        Self { columns, width: 2, offset, count: None, elements, element_count, diameter: None }
+        let (diameter, stated) = (None, Vec::new());
+        Self { columns, width: 2, offset, count: None, elements, element_count, diameter, stated }
     }
 }
 
@@ -220,6 +251,13 @@ impl MiniProfHeader {
             }
             "mpdc" => self.element_count = count(line, value)?,
             _ => {
+                let known = STATED.iter().find(|own| key.eq_ignore_ascii_case(own));
+                let own = known.zip(value.trim().parse().ok().filter(|value: &f64| value.is_finite()));
+                self.stated.extend(own.map(|(key, value)| StatedValue {
+                    key: (*key).into(),
+                    value,
+                    line: line.number,
+                }));
                 if let Some(k) = key.strip_prefix("mpd").and_then(|k| k.parse().ok()) {
                     self.elements.push((k, line.number, element(line, value)?));
                 }

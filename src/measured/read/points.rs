@@ -1,6 +1,6 @@
 //! The content of a file: points, design elements, and notes on oddities.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::scan::{Line, last_place};
 use crate::error::{Error, ErrorKind, Result};
@@ -83,6 +83,17 @@ pub struct Note {
     pub text: String,
 }
 
+/// A value \[mm\] that a file states of its profile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StatedValue {
+    /// Name of the value in the file: Sd, Sh, qR, W1, W2 or W3.
+    pub key: String,
+    /// The value \[mm\].
+    pub value: f64,
+    /// Line of the file.
+    pub line: usize,
+}
+
 /// The content of a file, in its order, its unit and its axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
@@ -100,6 +111,8 @@ pub struct Points {
     pub elements: Vec<DesignElement>,
     /// Diameter of the wheel at its taping line \[mm\], if the file holds it.
     pub diameter: Option<f64>,
+    /// Values of the profile that the file holds.
+    pub stated: Vec<StatedValue>,
     /// Notes on oddities.
     pub notes: Vec<Note>,
     /// Length \[mm\] of the file's unit by which the coordinates were multiplied already; 1 if they were not.
@@ -152,6 +165,7 @@ impl Points {
             sections: vec![0],
             elements: Vec::new(),
             diameter: None,
+            stated: Vec::new(),
             notes: Vec::new(),
             applied: 1.0,
             unit_line: None,

@@ -1,7 +1,7 @@
 //! Intervals of noise and of repeats.
 
 use super::*;
-use wheelrail::measured::noise::{Deviates, POINT_STEP, Remeasured};
+use wheelrail::measured::noise::{Deviates, POINT_STEP, Remeasured, Spread};
 
 const SIGMA: f64 = 0.02;
 
@@ -110,4 +110,15 @@ fn noise_without_meaning_is_refused_and_what_cannot_be_sampled_is_a_finding() ->
     assert!(lost.findings.iter().any(|text| text.contains("noise: every sample")), "{:?}", lost.findings);
     assert!(lost.value(Quantity::FlangeHeight).is_some() && lost.spread(Quantity::FlangeHeight).is_none());
     Ok(())
+}
+
+#[test]
+fn a_lost_sample_does_not_empty_an_interval() {
+    let all = |lost: i32| (0..40).map(move |k| if k < lost { f64::NAN } else { f64::from(k) });
+    for lost in [0, 1, 20] {
+        let spread = Spread::of(all(lost)).expect("an interval");
+        assert_eq!(spread.samples, 40 - lost as usize);
+        assert!(spread.low < spread.high && spread.low_error > 0.0, "{spread:?}");
+    }
+    assert!(Spread::of(all(21)).is_none());
 }

@@ -250,8 +250,11 @@ fn measured(
         None => measure(profile, side, nominal, options)?,
         Some(noise) => measure_noisy(profile, side, nominal, options, noise)?,
     };
-    let mut measures = measures.with_diameter(source.measured().and_then(|of| of.record.diameter));
-    let doubts = source.measured().map_or_else(Vec::new, |of| of.record.warnings.clone());
+    let record = source.measured().map(|of| &of.record);
+    let mut measures = measures
+        .with_diameter(record.and_then(|of| of.diameter))
+        .compared(record.map_or(&[], |of| of.stated.as_slice()));
+    let doubts = record.map_or_else(Vec::new, |of| of.warnings.clone());
     measures.findings.extend(doubts.iter().map(|doubt| format!("{}: {}", doubt.place, doubt.found)));
     Ok(measures)
 }

@@ -1,6 +1,6 @@
 //! Several profiles of a command, with the nominal on which they are aligned: for `measure` and `average`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rayon::prelude::*;
@@ -54,14 +54,18 @@ impl SeveralArguments {
         self.files.par_iter().map(|file| self.source(file, self.measured.clone())).collect()
     }
 
-    /// Reads the nominal, to which the options of measured files do not apply.
+    /// Reads the nominal. The options of measured files answer what its own file leaves open.
     ///
     /// # Errors
     /// A name or file that is no profile.
     pub(super) fn nominal(&self) -> Result<Option<SourcedProfile>> {
-        let nominal = self.nominal.as_ref();
-        let read = nominal.map(|name| self.source(name, MeasuredArguments::default()));
-        read.transpose().map_err(|error| error.within("--nominal"))
+        let Some(name) = &self.nominal else { return Ok(None) };
+        let alone = self.source(name, MeasuredArguments::default());
+        let read = match alone {
+            Err(_) if Path::new(name).exists() => self.source(name, self.measured.clone()),
+            other => other,
+        };
+        read.map(Some).map_err(|error| error.within("--nominal"))
     }
 
     fn source(&self, name: &str, measured: MeasuredArguments) -> Result<SourcedProfile> {

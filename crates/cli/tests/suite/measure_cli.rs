@@ -283,3 +283,74 @@ fn an_average_is_a_profile_with_its_spread() {
         assert_eq!(average(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }
+
+/// A file of the tests beside a folder of this package.
+fn of_tests(file: &str) -> String {
+    format!("{}/../../{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn what_lies_in_a_gap_has_no_value_but_a_finding() {
+    let folder = TempDir::new().unwrap();
+    let file = of_tests("tests/defects/measure-gap-tip.txt");
+    let arguments = [&file, "--side", "wheel", "--mirror", "false", "--json"];
+    for nominal in [&[][..], &["--nominal", "S1002"]] {
+        let rows = text(folder.path(), &[&arguments[..], nominal].concat(), 0);
+        let rows: Vec<Value> = serde_json::from_str(&rows).unwrap();
+        let row = &rows[0];
+        assert!(row["flange_height_mm"].is_null() && row["qr_mm"].is_null(), "{row}");
+        assert!((row["flange_thickness_mm"].as_f64().unwrap() - 32.5).abs() < 0.01, "{row}");
+        assert!(row["finding"].as_str().unwrap().contains("no flange tip: a gap of the points"), "{row}");
+    }
+}
+
+#[test]
+fn one_side_of_a_rail_is_aligned_by_its_web() {
+    let folder = TempDir::new().unwrap();
+    let file = of_tests("tests/defects/one-sided-scan-worn-moved.txt");
+    let arguments = [&file, "--side", "rail", "--mirror", "false", "--flip-z", "false", "--nominal", "UIC60"];
+    let rows = text(folder.path(), &[&arguments[..], &["--align", "web", "--json"]].concat(), 0);
+    let rows: Vec<Value> = serde_json::from_str(&rows).unwrap();
+    let row = &rows[0];
+    assert!((row["w1_mm"].as_f64().unwrap() - 0.8).abs() < 0.03, "{row}");
+    let about = row["alignment_text"].as_str().unwrap();
+    let moved = about.split_once("moved by (").unwrap().1.split_once(" deg").unwrap().0;
+    let numbers: Vec<f64> = moved.split([',', ' ', ')']).filter_map(|word| word.parse().ok()).collect();
+    let [x, z, turn] = numbers[..] else { panic!("{about}") };
+    assert!((x + 2.571).abs() < 0.02 && (z - 45.040).abs() < 0.02 && (turn + 0.8).abs() < 0.01, "{about}");
+}
+
+#[test]
+fn a_nominal_file_takes_the_options_that_its_own_leaves_open() {
+    let folder = TempDir::new().unwrap();
+    let file = of_tests("examples/profiles/60E1.ban");
+    let rows = text(folder.path(), &[&file, "--mirror", "--nominal", &file, "--json"], 0);
+    let rows: Vec<Value> = serde_json::from_str(&rows).unwrap();
+    assert!(rows[0]["w1_mm"].as_f64().unwrap().abs() < 1e-6 && rows[0]["finding"].is_null(), "{}", rows[0]);
+    // The file leaves the side open, and nothing answers it.
+    assert!(text(folder.path(), &["60E1", "--nominal", &file], 2).is_empty());
+    // A built-in nominal has no question.
+    text(folder.path(), &[&file, "--mirror", "--nominal", "60E1"], 0);
+}
+
+#[test]
+fn a_verdict_is_the_same_with_and_without_a_nominal() {
+    let Some(contact) = std::env::var_os("WHEELRAIL_CONTACT") else { return };
+    let folder = TempDir::new().unwrap();
+    let file = Path::new(&contact).join("testbank/profiles/whl_left_iter795.whl");
+    let limits = of_tests("tests/defects/measure-limits.toml");
+    let arguments = [file.to_str().unwrap(), "--limits", &limits, "--json"];
+    let rows = |more: &[&str]| -> Value {
+        let rows = text(folder.path(), &[&arguments[..], more].concat(), 0);
+        serde_json::from_str::<Vec<Value>>(&rows).unwrap()[0].clone()
+    };
+    let (alone, on_nominal) = (rows(&[]), rows(&["--nominal", "S1002"]));
+    for (key, header) in [("flange_height_mm", 34.9985), ("flange_thickness_mm", 34.3347), ("qr_mm", 10.0658)]
+    {
+        assert_eq!(alone[key], on_nominal[key]);
+        assert!((alone[key].as_f64().unwrap() - header).abs() < 0.05, "{alone}");
+    }
+    assert_eq!(alone["limits"], on_nominal["limits"]);
+    let finding = on_nominal["finding"].as_str().unwrap();
+    assert!(finding.contains("residual") || finding.contains("off the nominal by"), "{finding}");
+}

@@ -106,7 +106,7 @@ page.replaceChildren(
     element("div", { class: "head" }, element("div", { class: "slider" }, element("label", { for: "file" }, "File"), chosen, before, after, number)),
     lists,
     element("div", { class: "fleet" }, drawing, values),
-    element("footer", {}, element("p", {}, "± is the largest change of a value if the profile lay 0.1 mm or 0.1° otherwise: what its alignment is worth. An interval holds 95 % of the samples of noise, or of further measurements; the ± behind it is the sampling error of its ends. The left and right arrows go through the files.")),
+    element("footer", {}, element("p", {}, "± is how far a value may be off: if the profile lay 0.1 mm or 0.1° otherwise, or as a fit has it, and by the noise of its points. An interval holds 95 % of the samples of noise, or of further measurements; the ± behind it is the sampling error of its ends. The left and right arrows go through the files.")),
 );
 page.addEventListener("keydown", (event) => {
     const [step] = arrow(event) ?? [0];

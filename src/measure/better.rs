@@ -1,0 +1,73 @@
+//! Finds the built-in profile that fits a measured one better than its nominal does.
+
+use super::align::consensus;
+use super::curve::MarkedCurve;
+use super::fit::FittedMotion;
+use super::nominal::Nominal;
+use crate::profile::{Profile, Side, Station, standards};
+
+/// Distance of marks \[mm\]: built-in profiles differ by more over whole roundings.
+const STEP: f64 = 1.0;
+/// Share of the measured curve over which a nominal that fits is the right one.
+const ALL: f64 = 0.95;
+/// Share of the measured curve over which another profile that fits is the nominal: wear at one side makes a head that of a narrower
+/// rail, but does not spare the rest.
+const NEARLY_ALL: f64 = 0.9;
+/// Length \[mm\] of the curve, and share of it, over which another profile has to fit beyond what the nominal fits to be named.
+const MORE: f64 = 20.0;
+const MORE_SHARE: f64 = 0.15;
+/// Difference \[mm\] of such lengths that is none: of two the one with the smaller residual fits better.
+const AS_LONG: f64 = 5.0;
+
+/// A built-in profile that fits a measured curve at least as well as its nominal.
+pub(super) struct Rival {
+    pub profile: Profile,
+    /// The motion that puts the curve on it.
+    pub motion: Station,
+    /// The rival by name, with both residuals, if it fits much better.
+    pub better: Option<String>,
+    /// Whether it fits nearly all of the curve, so that the nominal is another.
+    pub is_nominal: bool,
+}
+
+/// Finds the built-in profile that fits best, if it fits over as great a length as the nominal or more.
+pub(super) fn rival(nominal: &Nominal, curve: &MarkedCurve, side: Side) -> Option<Rival> {
+    let curve = curve.thinned(STEP);
+    let length: f64 = curve.lengths().sum();
+    let of = |profile: &Profile| consensus(&curve, &MarkedCurve::drawn(profile, STEP), side);
+    let own = of(nominal.profile);
+    let fits = own.map_or(0.0, |own| own.length);
+    if fits >= ALL * length {
+        return None;
+    }
+    let built_in = |name: &str| match side {
+        Side::Rail => standards::rail(name).ok(),
+        Side::Wheel => standards::wheel(name).ok(),
+    };
+    let names: Vec<&str> = match side {
+        Side::Rail => standards::rail_names().collect(),
+        Side::Wheel => standards::wheel_names().collect(),
+    };
+    let others = names.into_iter().filter_map(|name| {
+        let profile = built_in(name)?;
+        Some((of(&profile)?, name, profile))
+    });
+    let others: Vec<_> = others.collect();
+    let longest = others.iter().map(|other| other.0.length).fold(0.0, f64::max);
+    let as_long = others.into_iter().filter(|other| other.0.length >= longest - AS_LONG);
+    let (best, name, profile) = as_long.min_by(|a, b| a.0.rms.total_cmp(&b.0.rms))?;
+    if best.length < fits {
+        return None;
+    }
+    let text = |of: &FittedMotion| format!("{:.3} mm over {:.0} mm", of.rms, of.length);
+    let better = (best.length >= fits + MORE.max(MORE_SHARE * length)).then(|| {
+        let own = own.map_or_else(|| "nothing".to_owned(), |own| text(&own));
+        format!(
+            "{name} fits better, with a residual of {}, than the nominal {} with {own}: another nominal",
+            text(&best),
+            nominal.profile.name
+        )
+    });
+    let is_nominal = better.is_some() && best.length >= NEARLY_ALL * length;
+    Some(Rival { profile, motion: best.motion, better, is_nominal })
+}
