@@ -63,9 +63,12 @@ impl NominalFit<'_> {
     pub fn of_parts(&self, start: Station) -> Result<FittedMotion, String> {
         let own: f64 =
             self.nominal.lengths().zip(self.parts).filter(|(_, part)| **part).map(|(l, _)| l).sum();
+        if own == 0.0 {
+            return Err("the nominal has none of it".into());
+        }
         let near = |foot: usize, across: f64| self.parts[foot] && across.abs() <= FARTHEST;
         let fitted = self.settled(start, near, f64::INFINITY)?;
-        if fitted.length < self.least_part * own || own == 0.0 {
+        if fitted.length < self.least_part * own {
             return Err(format!("{:.1} mm of its {own:.1} mm are measured", fitted.length.min(own)));
         }
         Ok(fitted)

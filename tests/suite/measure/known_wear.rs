@@ -261,6 +261,10 @@ impl Tally {
             let Some(truth) = truth(quantity).filter(|_| nominal || !wear.contains(&quantity)) else {
                 continue;
             };
+            // The area counts above the lowest height that the faces reach: cut faces have another.
+            if quantity == Quantity::HeadAreaLost && worn.faults.cut != [0.0; 2] {
+                continue;
+            }
             let Some(value) = measures.value(quantity) else {
                 missing.push(quantity.key());
                 continue;

@@ -1,4 +1,4 @@
-//! What lies in a gap, noise on a tread, one-sided scans, other nominals.
+//! What lies in a gap, noise on a tread, other nominals.
 
 use super::*;
 use wheelrail::internal::Random;
@@ -87,40 +87,6 @@ fn noise_makes_no_hollow_tread_and_no_other_crown() -> Result<()> {
         assert!(off.is_some_and(|off| (radius - 300.0).abs() <= 3.0 * off), "{number}: {radius} {off:?}");
     }
     assert_eq!(fits, scenes() as usize, "a fit does not settle");
-    Ok(())
-}
-
-#[test]
-fn one_side_of_a_whole_rail_is_aligned_by_its_web() -> Result<()> {
-    let nominal = standards::rail("UIC60")?;
-    let web = MeasureOptions { align: Some(Align::Web), ..MeasureOptions::default() };
-    for number in 0..scenes() {
-        let mut random = Random::stream(60, number);
-        let depth = random.between(0.0, 2.0);
-        let by = |at: Station| [0.0, if at.z > -12.0 { -depth } else { 0.0 }];
-        let moved = frame(random.between(-5.0, 5.0), random.between(-60.0, 60.0), random.between(-1.0, 1.0));
-        let left = random.below(2) == 0;
-        let end = random.between(8.0, 22.0);
-        // From the crown down the head's side to the web and the foot.
-        let all = trace(&nominal, 0.3);
-        let top = all.iter().max_by(|a, b| a.station.z.total_cmp(&b.station.z)).map_or(0.0, |mark| mark.s);
-        let [from, to] = if left { [top - 200.0, top + end] } else { [top - end, top + 200.0] };
-        let seen = all.iter().filter(|mark| mark.s > from && mark.s < to);
-        let mut marks: Vec<Station> = seen.map(|mark| mark.station).collect();
-        // A joint has two marks.
-        marks.dedup_by(|a, b| (a.x - b.x).hypot(a.z - b.z) < 0.15);
-        let place = |at: &Station| {
-            let off = 0.01 * random.normal();
-            let [dx, dz] = by(*at);
-            let at =
-                Station { x: at.x + dx - off * at.sin, z: at.z + dz + off * at.cos, ..*at }.placed_by(&moved);
-            [at.x, at.z]
-        };
-        let points: Vec<[f64; 2]> = marks.iter().map(place).collect();
-        let measures = measure(&drawn(&points, Side::Rail)?, Side::Rail, Some(&nominal), &web)?;
-        let w1 = value(&measures, Quantity::W1);
-        assert!((w1 - depth).abs() < 0.03, "{number}: {w1} {depth} {measures:?}");
-    }
     Ok(())
 }
 

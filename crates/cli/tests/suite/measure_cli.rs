@@ -305,22 +305,6 @@ fn what_lies_in_a_gap_has_no_value_but_a_finding() {
 }
 
 #[test]
-fn one_side_of_a_rail_is_aligned_by_its_web() {
-    let folder = TempDir::new().unwrap();
-    let file = of_tests("tests/defects/one-sided-scan-worn-moved.txt");
-    let arguments = [&file, "--side", "rail", "--mirror", "false", "--flip-z", "false", "--nominal", "UIC60"];
-    let rows = text(folder.path(), &[&arguments[..], &["--align", "web", "--json"]].concat(), 0);
-    let rows: Vec<Value> = serde_json::from_str(&rows).unwrap();
-    let row = &rows[0];
-    assert!((row["w1_mm"].as_f64().unwrap() - 0.8).abs() < 0.03, "{row}");
-    let about = row["alignment_text"].as_str().unwrap();
-    let moved = about.split_once("moved by (").unwrap().1.split_once(" deg").unwrap().0;
-    let numbers: Vec<f64> = moved.split([',', ' ', ')']).filter_map(|word| word.parse().ok()).collect();
-    let [x, z, turn] = numbers[..] else { panic!("{about}") };
-    assert!((x + 2.571).abs() < 0.02 && (z - 45.040).abs() < 0.02 && (turn + 0.8).abs() < 0.01, "{about}");
-}
-
-#[test]
 fn a_nominal_file_takes_the_options_that_its_own_leaves_open() {
     let folder = TempDir::new().unwrap();
     let file = of_tests("examples/profiles/60E1.ban");
