@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
+use super::ends::{OpenEnd, end_in_contact};
 use super::found::Found;
 use super::wheel::ContactRegion;
 use crate::error::{Error, Result};
@@ -105,6 +106,11 @@ impl PlacedContact {
     /// Tells whether a load was asked for, from which half-spaces found δ.
     pub fn is_loaded(&self) -> bool {
         !self.normal_loads.is_empty()
+    }
+
+    /// Finds an open end of a profile at C or in the patch: pressures there are none that can be trusted.
+    pub fn open_end(&self) -> Option<OpenEnd> {
+        end_in_contact(&self.placement, self.whole_patch())
     }
 
     /// Gives the patch over the whole plane, found once; `None` without an approach.

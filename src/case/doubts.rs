@@ -18,6 +18,8 @@ pub enum DoubtKind {
     BeyondTread,
     /// The rolling radius on the tread is far from the nominal one.
     RollingRadius,
+    /// The bodies touch at the end of a profile, or the end cuts their patch off.
+    ProfileEnd,
     /// The approach is larger or smaller than any elastic one.
     Approach,
     /// The tangents at chosen points differ.
@@ -54,12 +56,13 @@ pub enum DoubtKind {
 
 impl DoubtKind {
     /// All kinds.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::FlangeTip,
         Self::FlangeBack,
         Self::Lifted,
         Self::BeyondTread,
         Self::RollingRadius,
+        Self::ProfileEnd,
         Self::Approach,
         Self::Tilt,
         Self::Inclination,
@@ -79,8 +82,15 @@ impl DoubtKind {
     ];
 
     /// The kinds about a place of contact: those that a sweep names at each position.
-    pub const OF_CONTACT: [Self; 6] =
-        [Self::FlangeTip, Self::FlangeBack, Self::Lifted, Self::BeyondTread, Self::RollingRadius, Self::Hole];
+    pub const OF_CONTACT: [Self; 7] = [
+        Self::FlangeTip,
+        Self::FlangeBack,
+        Self::Lifted,
+        Self::BeyondTread,
+        Self::RollingRadius,
+        Self::ProfileEnd,
+        Self::Hole,
+    ];
 
     /// Gives the word that stands for the kind in tables.
     pub fn word(self) -> &'static str {
@@ -90,6 +100,7 @@ impl DoubtKind {
             Self::Lifted => "lifted",
             Self::BeyondTread => "beyond-tread",
             Self::RollingRadius => "rolling-radius",
+            Self::ProfileEnd => "profile-end",
             Self::Approach => "approach",
             Self::Tilt => "tilt",
             Self::Inclination => "inclination",
@@ -126,6 +137,9 @@ impl DoubtKind {
             Self::RollingRadius => {
                 "R is measured to the profile's origin, which some drawings (APTA) have at the gauge point and instruments at \
                  the flange; give the radius there, or move the profile by shift or origin"
+            }
+            Self::ProfileEnd => {
+                "what stands beyond was not measured or drawn: give a profile that goes farther; pressures are left out"
             }
             Self::Approach => {
                 "wheels and rails approach each other by 0.05 to 0.2 mm; check the unit, mm for an approach and N for a load"
@@ -171,11 +185,19 @@ impl DoubtKind {
 /// The doubts about a place of contact: a number \[mm\] for each kind of [`DoubtKind::OF_CONTACT`], `None` where there is none.
 ///
 /// The numbers are x on the wheel of a contact on tip or back, the height of the tread over the rail, the distance from the
-/// tip, and the rolling radius less the nominal one.
+/// tip, the rolling radius less the nominal one, and x on the wheel of a contact at the end of a profile.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactDoubts(pub(super) [Option<f64>; DoubtKind::OF_CONTACT.len()]);
 
 impl ContactDoubts {
+    /// Adds the doubt about a contact at the end of a profile, at x on the wheel \[mm\].
+    #[must_use]
+    pub(super) fn at_end(mut self, x: Option<f64>) -> Self {
+        let [.., end] = &mut self.0;
+        *end = x.or(*end);
+        self
+    }
+
     /// Lists the doubts with their numbers \[mm\].
     pub fn list(self) -> impl Iterator<Item = (DoubtKind, f64)> {
         DoubtKind::OF_CONTACT.into_iter().zip(self.0).filter_map(|(kind, value)| Some((kind, value?)))
@@ -210,7 +232,7 @@ impl DoubtSet {
         Self(bits.sum())
     }
 
-    /// Gives the number of the set, below 2⁶.
+    /// Gives the number of the set, below 2⁷.
     pub fn code(self) -> u8 {
         self.0
     }
@@ -251,6 +273,7 @@ impl Doubt {
             DoubtKind::Lifted => format!("the wheel's tread is {value:.2} mm above the top of the rail"),
             DoubtKind::Hole => "the list of slices defines no surface under the wheel".into(),
             DoubtKind::BeyondTread => format!("the wheel touches {value:.2} mm from the tip of its flange"),
+            DoubtKind::ProfileEnd => format!("the bodies touch at the end of a profile, {on_wheel}"),
             _ => {
                 let rolling = radius + value;
                 format!("the rolling radius, {rolling:.2} mm, differs by {value:.2} mm from wheel.radius")

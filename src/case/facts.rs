@@ -1,6 +1,7 @@
 //! The facts of a contact, each listed once: the table of a run, its page and `summary.json` read this list.
 
 use super::contact::EllipseUnder;
+use super::pressure::EdgeOnRail;
 use super::run::Part;
 use crate::load::Ellipse;
 use crate::numerics::interval::Interval;
@@ -39,7 +40,7 @@ const KILO: f64 = 1e-3;
 const MILLI: f64 = 1e3;
 
 /// The facts of a contact, in the order in which they are shown.
-pub const FACTS: [Fact; 27] = [
+pub const FACTS: [Fact; 28] = [
     number("C on the rail, x", "mm", &["rail", "contact_x_mm"], (1.0, 3), |part| {
         Some(part.site.contact.placement.rail().point().station.x)
     }),
@@ -65,10 +66,14 @@ pub const FACTS: [Fact; 27] = [
     number("normal force", "kN", &["normal_load_n"], (KILO, 3), |part| part.site.normal_load),
     number("its vertical part", "kN", &["vertical_load_n"], (KILO, 3), |part| part.site.vertical_load()),
     number("largest pressure", "N/mm²", &["pressure", "largest_n_per_mm2"], (1.0, 0), |part| {
-        Some(part.analysis.pressure.as_ref()?.largest.pressure_n_per_mm2)
+        let found = part.analysis.pressure.as_ref()?;
+        Some(found.largest.pressure_n_per_mm2).filter(|_| found.unbounded.is_none())
+    }),
+    text("largest pressure", |part| {
+        part.analysis.pressure.as_ref()?.unbounded.as_ref().map(EdgeOnRail::said)
     }),
     number("its estimated error", "N/mm²", &["pressure", "largest_error_n_per_mm2"], (1.0, 0), |part| {
-        Some(part.analysis.pressure.as_ref()?.largest_error)
+        Some(part.analysis.pressure.as_ref()?.largest_error).filter(|error| error.is_finite())
     }),
     Fact {
         unit: "mm",

@@ -3,6 +3,8 @@
 use nalgebra::{Point2, UnitComplex};
 
 use super::doubts::ContactDoubts;
+use super::ends::OpenEnds;
+use super::input::{Profiles, SideProfiles};
 use crate::measure::flange_back;
 use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
@@ -79,6 +81,7 @@ pub struct Landmarks {
     pub(crate) back: f64,
     /// Abscissa of the flange back \[mm\] where the wheel's profile shows it.
     pub(crate) back_x: Option<f64>,
+    ends: OpenEnds,
 }
 
 impl Landmarks {
@@ -94,7 +97,18 @@ impl Landmarks {
         let back = back.fold(f64::NEG_INFINITY, f64::max) - low.y;
         let tip = (median_height(&wheel) - low.y >= FLANGE).then_some(low);
         let back_x = flange_back(pair.wheel());
-        Self { pair: pair.clone(), top, tip, reach, back, back_x }
+        Self { pair: pair.clone(), top, tip, reach, back, back_x, ends: OpenEnds::new(pair, None) }
+    }
+
+    /// Finds the landmarks of a side's pair; the ends are those of its body that varies.
+    pub fn of(profiles: &SideProfiles) -> Self {
+        let ends = OpenEnds::new(&profiles.pair, profiles.varying.as_ref());
+        Self { ends, ..Self::new(&profiles.pair) }
+    }
+
+    /// Gives x on the wheel \[mm\] of a contact at an open end of a profile; `None` of others.
+    fn at_end(&self, contact: &Contact) -> Option<f64> {
+        self.ends.hold(contact).then_some(contact.wheel_x)
     }
 
     /// Returns the height \[mm\] of the wheel's surface over the top of the rail, 0 where nothing of the wheel is over it: how far
@@ -107,7 +121,7 @@ impl Landmarks {
         if height.is_nan() { 0.0 } else { height }
     }
 
-    /// Finds what is doubtful about a contact; `lift` is that of its wheel \[mm\], `other` that of the other wheel.
+    /// Finds what is doubtful about a contact but for ends of profiles; `lift` is that of its wheel \[mm\], `other` that of the other wheel.
     pub(super) fn doubts(&self, at: &Touching, [lift, other]: [f64; 2]) -> ContactDoubts {
         let [x, z] = [at.wheel.x, at.wheel.y];
         let on_tip = self.tip.is_some_and(|tip| z < tip.y + TIP);
@@ -148,7 +162,12 @@ impl SideLandmarks {
         Self { right, left }
     }
 
-    /// Finds the doubts about each row of a position; rows of further contacts have none.
+    /// Finds the landmarks of both sides' pairs.
+    pub fn of(profiles: &Profiles) -> Self {
+        Self::new(Landmarks::of(&profiles.right), profiles.left.as_ref().map(Landmarks::of))
+    }
+
+    /// Finds the doubts about each row of a position; rows of further contacts have only that about ends of profiles.
     pub fn of_rows<'a>(
         &'a self,
         rows: &'a [SweepRow],
@@ -160,8 +179,13 @@ impl SideLandmarks {
         let [left, right] = self.of_first(first);
         rows.iter().map(move |row| match row.number {
             0 => (row, if row.side == TrackSide::Right { right } else { left }),
-            _ => (row, ContactDoubts::default()),
+            _ => (row, self.of_end(row)),
         })
+    }
+
+    /// Finds the doubt about a contact at the end of a profile, the one that needs no other landmark.
+    pub(super) fn of_end(&self, row: &SweepRow) -> ContactDoubts {
+        ContactDoubts::default().at_end(self.on(row.side).at_end(&row.contact))
     }
 
     /// Finds the doubts about the first contacts of the left and the right side, or of a single wheel, which is a right one.
@@ -172,7 +196,7 @@ impl SideLandmarks {
         let lifts = [lift(0), lift(1)];
         [0, 1].map(|k| {
             let doubts = touching[k].as_ref().map(|at| marks[k].doubts(at, [lifts[k], lifts[1 - k]]));
-            doubts.unwrap_or_default()
+            doubts.unwrap_or_default().at_end(first[k].and_then(|contact| marks[k].at_end(contact)))
         })
     }
 

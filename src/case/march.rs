@@ -2,7 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::doubts::ContactDoubts;
+use super::ends::end_in_contact;
 use super::input::{Case, Echo, Profiles};
+use super::landmarks::SideLandmarks;
 use super::places::rows_under_load;
 use super::run::end_reached;
 use super::wheel::ContactRegion;
@@ -41,6 +44,8 @@ pub struct MarchCase {
     pub profiles: Profiles,
     /// The wheelset on the track under the loads of the scene, wherever it stands; `None` without loads.
     pub loaded: Option<Case>,
+    /// Landmarks by which its contacts are judged.
+    pub landmarks: SideLandmarks,
     /// What the lists leave undefined, and what is doubtful.
     pub warnings: Vec<String>,
     /// The scene, as pages name it.
@@ -58,6 +63,8 @@ pub struct MarchRow {
     pub normal_load: f64,
     /// Whether the end of the slices cuts its patch off, so that the approach is too large.
     pub cut_off: bool,
+    /// Whether a profile ends in the contact. The other doubts need landmarks of the section at each place.
+    pub doubts: ContactDoubts,
 }
 
 /// The places of contact of a wheelset with the middle of its axle at one place, or at one pitch.
@@ -90,18 +97,23 @@ pub fn hole_warning(places: usize) -> Option<String> {
 }
 
 impl MarchRow {
-    fn touching(row: SweepRow) -> Self {
-        Self { row, approach: f64::NAN, normal_load: f64::NAN, cut_off: false }
+    fn touching(row: SweepRow, landmarks: &SideLandmarks) -> Self {
+        let doubts = landmarks.of_end(&row);
+        Self { row, approach: f64::NAN, normal_load: f64::NAN, cut_off: false, doubts }
     }
 
     /// Makes the row of a place with the region that has its frame; without one, the row of first touch.
-    fn carrying(row: SweepRow, region: Option<&ContactRegion>) -> Self {
-        region.map_or(Self::touching(row), |region| Self {
-            row,
-            approach: region.approach,
-            normal_load: region.loads.iter().sum(),
-            cut_off: end_reached(&region.placement, &region.patch).is_some(),
-        })
+    fn carrying(row: SweepRow, region: Option<&ContactRegion>, landmarks: &SideLandmarks) -> Self {
+        let touching = Self::touching(row, landmarks);
+        let Some(ContactRegion { placement, patch, approach, loads, .. }) = region else { return touching };
+        let end = end_in_contact(placement, Some(patch)).map(|_| row.contact.wheel_x);
+        Self {
+            approach: *approach,
+            normal_load: loads.iter().sum(),
+            cut_off: end_reached(placement, patch).is_some(),
+            doubts: touching.doubts.at_end(end),
+            ..touching
+        }
     }
 }
 
@@ -146,9 +158,11 @@ impl MarchCase {
                     format!("along {along} mm")
                 };
                 let rows = rows_under_load(&here).map_err(|error| error.within(place))?;
-                rows.into_iter().map(|(row, region)| MarchRow::carrying(row, region.as_ref())).collect()
+                let carrying =
+                    |(row, region): (_, Option<_>)| MarchRow::carrying(row, region.as_ref(), &self.landmarks);
+                rows.into_iter().map(carrying).collect()
             }
-            _ => stop.rows.iter().copied().map(MarchRow::touching).collect(),
+            _ => stop.rows.iter().map(|row| MarchRow::touching(*row, &self.landmarks)).collect(),
         };
         let Position { lateral, yaw, .. } = self.march.position;
         Ok(MarchStop { along, rows, holes: stop.holes, stands: [lateral, yaw] })

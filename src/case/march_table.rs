@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::columns::SweepColumns;
-use super::doubts::DoubtSet;
 use super::march::{MarchCourse, MarchRow, MarchStop};
 use crate::search::{Contact, Event, TrackSide};
 
@@ -36,9 +35,9 @@ impl MarchColumns {
             self.columns.push_hole(number, side, stop.stands);
             self.numbers.iter_mut().for_each(|column| column.push(f64::NAN));
         }
-        for MarchRow { row, approach, normal_load, .. } in &stop.rows {
+        for MarchRow { row, approach, normal_load, doubts, .. } in &stop.rows {
             self.along.push(stop.along);
-            self.columns.push(number, row, None, DoubtSet::default());
+            self.columns.push(number, row, None, doubts.kinds());
             // 0 without a sign.
             let numbers = [0.0 - row.contact.turn, *approach, *normal_load];
             self.numbers.iter_mut().zip(numbers).for_each(|(column, number)| column.push(number));

@@ -1,14 +1,18 @@
 //! The pressures of a part: those that its load was found with, or those solved over its grid.
 
+use nalgebra::Point2;
+
 use super::contact::PlacedContact;
 use super::grids::Grid;
 use super::input::{AskedPressure, Question};
 use super::site::Site;
+use super::usual;
 use crate::error::{Error, ErrorKind, Result};
 use crate::export::{Nodes, even_step};
-use crate::load::{Cells, HalfSpace, Largest, Pressures, on_wider_cells, press_alone};
+use crate::load::{Cells, Edge, HalfSpace, Largest, Pressures, on_finer_cells, on_wider_cells, press_alone};
 use crate::numerics::interval::Interval;
 use crate::patch::Window;
+use crate::placement::Placement;
 
 /// Largest violation of contact's conditions relative to δ: the largest pressure then errs by 5e-4 of itself at most.
 const SETTLED: f64 = 1e-4;
@@ -22,6 +26,9 @@ const FINER: usize = 3;
 
 /// Most cells that are made unasked: they take half a second.
 const MOST_UNASKED: usize = 300_000;
+
+/// Most cells on which the largest pressure under a load is solved again: they take 50 ms.
+const MOST_OF_LOAD: usize = 20_000;
 
 /// Most cells that may be asked for: they take two seconds.
 const MOST_ASKED: usize = 1_000_000;
@@ -62,20 +69,55 @@ impl OnGrid {
     }
 }
 
+/// An edge in a contact, with its place on the rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeOnRail {
+    /// The kink of s.
+    pub edge: Edge,
+    /// Abscissa on the rail's profile \[mm\].
+    pub rail_x: f64,
+}
+
+impl EdgeOnRail {
+    fn new(placement: &Placement, edge: Edge) -> Self {
+        let [xi, eta] = edge.at_mm;
+        let rail_x = match placement.lofted_rail() {
+            Some(lofted) => {
+                let [across, along, _] = lofted.axes();
+                lofted.origin()[0] + xi * across[0] + eta * along[0]
+            }
+            None => {
+                let body = placement.rail();
+                let height = body.section().height(xi);
+                let height = if height.is_nan() { 0.0 } else { height };
+                (body.contact_frame() * Point2::new(xi, height)).x
+            }
+        };
+        Self { edge, rail_x }
+    }
+
+    /// Says why there is no largest pressure.
+    pub fn said(&self) -> String {
+        format!("unbounded: an edge at x = {:.2} mm on the rail", self.rail_x)
+    }
+}
+
 /// The pressures of a part, in its contact frame.
 #[derive(Debug, Clone)]
 pub struct PartPressure {
     /// The largest pressure and its place.
     pub largest: Largest,
-    /// Estimated error of the largest pressure \[N/mm²\].
+    /// Estimated error of the largest pressure \[N/mm²\]; infinite where an edge leaves it unbounded.
     pub largest_error: f64,
+    /// The edge in the contact at which the elastic pressure has no bound: `largest` is then that on these cells; `None` without.
+    pub unbounded: Option<EdgeOnRail>,
     /// True contact area \[mm²\], where pressures are positive.
     pub contact_area: f64,
     /// Normal force \[N\] of the pressures.
     pub load: f64,
     /// Sides of the cells \[mm\] along ξ and η.
     pub cell: [f64; 2],
-    /// p \[N/mm²\] at the points of the grid, at i_ξ · n_η + i_η; `None` unless it was asked for.
+    /// Mean p \[N/mm²\] over the cells around the points of the grid, at i_ξ · n_η + i_η; `None` unless it was asked for.
     pub field: Option<Vec<f64>>,
     /// The edges of the true contact: lines in ξ and η \[mm\].
     pub outline: Vec<Vec<[f64; 2]>>,
@@ -86,12 +128,13 @@ pub struct PartPressure {
 
 impl PartPressure {
     /// Finds the pressures of a site: over its grid if they are asked for, or else those that its load was found with. `None`
-    /// where nothing is pressed: without a load and unasked, for an infeasible contact, and without a patch.
+    /// where nothing is pressed: without a load and unasked, for an infeasible contact, and without a patch; and where a profile ends in the
+    /// contact.
     ///
     /// # Errors
     /// Asked for on unequal steps, a single line, or more cells than a case bears.
     pub(super) fn new(site: &Site, question: &Question) -> Result<Option<Self>> {
-        if site.is_infeasible() || site.contact.approach.is_none() {
+        if site.is_infeasible() || site.contact.approach.is_none() || site.contact.open_end().is_some() {
             return Ok(None);
         }
         let modulus = question.modulus();
@@ -106,18 +149,37 @@ impl PartPressure {
         Ok(Some(found))
     }
 
-    /// Reads the pressures that the load was found with.
+    /// Reads the pressures that the load was found with. Where the largest one may err by more than 1 %, they are solved again on
+    /// finer cells.
     fn of_load(contact: &PlacedContact, grid: &Grid) -> Result<Option<Self>> {
         let mut all: Option<Self> = None;
         for solved in covered(contact, grid) {
             let wider = on_wider_cells(solved, super::wheel::SETTLED)?;
-            let one = Self::read(solved, solved.largest_error(&wider));
+            let one = Self::resolved(contact, solved.clone(), wider);
             all = Some(match all {
                 Some(before) => before.and(one),
                 None => one,
             });
         }
         Ok(all)
+    }
+
+    /// Reads pressures, those on `wider` cells beside them, or finer ones until the largest pressure is known to 1 %, or an edge found.
+    fn resolved(contact: &PlacedContact, mut here: Pressures, mut wider: Pressures) -> Self {
+        let (placement, approach) = (&contact.placement, contact.approach.unwrap_or(0.0));
+        loop {
+            let found = Self::read(placement, &here, &wider);
+            let [columns, rows] = here.cells.count;
+            if found.unbounded.is_some() || !found.is_doubtful() || 2 * columns * rows > MOST_OF_LOAD {
+                return found;
+            }
+            // The error says what cells that do not settle leave.
+            let Ok(finer) = on_finer_cells(placement, &here, approach, super::wheel::SETTLED) else {
+                return found;
+            };
+            let Ok(of_finer) = on_wider_cells(&finer, super::wheel::SETTLED) else { return found };
+            (here, wider) = (finer, of_finer);
+        }
     }
 
     /// Solves the pressures over the grid of a site, of equal steps; `modulus` is E* \[N/mm²\].
@@ -128,8 +190,17 @@ impl PartPressure {
     /// the elastic pressure has no bound. Cost: 30 ms for 200 × 200 cells, and s in their middles.
     ///
     /// # Errors
-    /// Unequal steps, a single line, or more than a million cells.
+    /// Unequal steps, a single line, or more than a million cells; a profile that ends in the contact.
     pub fn over_grid(site: &Site, asked: AskedPressure, modulus: f64) -> Result<Self> {
+        if let Some(end) = site.contact.open_end() {
+            let doubt = usual::profile_end(end);
+            return Err(Error::new(
+                "patch: pressure",
+                doubt.found,
+                "profiles that go on",
+                doubt.kind.cause(),
+            ));
+        }
         let (axes, contact) = ([&site.grid.xi, &site.grid.eta], &site.contact);
         let steps = [step("xi", axes[0])?, step("eta", axes[1])?];
         let counts = axes.map(Vec::len);
@@ -140,23 +211,26 @@ impl PartPressure {
         loop {
             let cells = cells_of(axes, steps, parts, MOST_ASKED)?;
             let [fine, wider] = press_alone(overlap(contact, &site.grid, cells)?, SETTLED, modulus)?;
-            let mut found = Self::read(&fine, fine.largest_error(&wider));
+            let mut found = Self::read(&contact.placement, &fine, &wider);
             let finer = parts.map(|part| FINER * part);
             let affordable = cells_of(axes, steps, finer, MOST_UNASKED).is_ok();
-            let once = asked.cell.is_none() && parts == [FINER; 2];
+            let once = asked.cell.is_none() && parts == [FINER; 2] && found.unbounded.is_none();
             if once && found.is_doubtful() && affordable {
                 parts = finer;
                 continue;
             }
-            found.field = Some(at_points(&fine, counts, parts));
+            found.field = Some(over_points(&fine, counts, parts));
             return Ok(found);
         }
     }
 
-    fn read(solved: &Pressures, largest_error: f64) -> Self {
+    fn read(placement: &Placement, solved: &Pressures, wider: &Pressures) -> Self {
+        let unbounded = solved.unbounded(placement).map(|edge| EdgeOnRail::new(placement, edge));
+        let largest_error = if unbounded.is_some() { f64::INFINITY } else { solved.largest_error(wider) };
         Self {
             largest: solved.largest(),
             largest_error,
+            unbounded,
             contact_area: solved.contact_area(),
             load: solved.load(),
             cell: solved.cells.step,
@@ -175,7 +249,10 @@ impl PartPressure {
         };
         let mut outline = self.outline;
         outline.append(&mut other.outline);
+        let unbounded = more.unbounded.or(less.unbounded);
         Self {
+            unbounded,
+            largest_error: if unbounded.is_some() { f64::INFINITY } else { more.largest_error },
             contact_area: more.contact_area + less.contact_area,
             load: more.load + less.load,
             outline,
@@ -192,10 +269,22 @@ impl PartPressure {
     pub(super) fn warnings(&self) -> Vec<String> {
         let (p, error) = (self.largest.pressure_n_per_mm2, self.largest_error);
         let [xi, eta] = self.cell;
+        if let Some(unbounded) = &self.unbounded {
+            let (said, Edge { kink, rise_n_per_mm2: rise, .. }) = (unbounded.said(), unbounded.edge);
+            let why = if kink.is_finite() {
+                format!("where the gap has a kink of {:.2} degrees", kink.to_degrees())
+            } else {
+                "where a surface ends".into()
+            };
+            return vec![format!(
+                "the largest pressure is {said}, {why}: it is {p:.0} N/mm² on cells of {xi:.2e} x {eta:.2e} mm, and {rise:.0} N/mm² more \
+                 where they are half as wide"
+            )];
+        }
         let doubtful = (self.field.is_some() && self.is_doubtful()).then(|| {
             format!(
                 "the largest pressure, {p:.0} N/mm² on cells of {xi:.2e} x {eta:.2e} mm, may err by {:.0} %: give a smaller \
-                 patch.pressure_cell; at a kink of a profile it has no bound",
+                 patch.pressure_cell",
                 100.0 * error / p
             )
         });
@@ -275,12 +364,16 @@ fn overlap(contact: &PlacedContact, grid: &Grid, cells: Cells) -> Result<HalfSpa
     HalfSpace::new(cells, &separations, contact.approach.unwrap_or(0.0) - lowered)
 }
 
-/// Gives the pressures of the cells in whose middles the points of a grid lie.
-fn at_points(solved: &Pressures, counts: [usize; 2], parts: [usize; 2]) -> Vec<f64> {
+/// Gives the mean pressures over the cells of a grid, so that their sum is the load; each is divided into parts.
+fn over_points(solved: &Pressures, counts: [usize; 2], parts: [usize; 2]) -> Vec<f64> {
     let (values, rows) = (solved.values(), solved.cells.count[1]);
-    let cell = |k: usize, i: usize| i * parts[k] + parts[k] / 2;
-    let points = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| [i, j]));
-    points.map(|[i, j]| values[cell(0, i) * rows + cell(1, j)]).collect()
+    let all = (parts[0] * parts[1]) as f64;
+    let points = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| [i * parts[0], j * parts[1]]));
+    let sum = |[i, j]: [usize; 2]| {
+        let lines = values.chunks_exact(rows).skip(i).take(parts[0]);
+        lines.flat_map(|line| &line[j..j + parts[1]]).sum::<f64>()
+    };
+    points.map(|first| sum(first) / all).collect()
 }
 
 #[cfg(test)]

@@ -191,8 +191,12 @@ impl Run {
 impl Part {
     /// Gives the largest pressure of Hertz's ellipse \[N/mm²\]; `None` without an ellipse, and where pressures were solved.
     pub fn hertz_pressure(&self) -> Option<f64> {
-        let unsolved = !self.site.contact.is_loaded() && self.analysis.pressure.is_none();
-        self.site.contact.ellipse.filter(|_| unsolved).map(|ellipse| ellipse.pressure_n_per_mm2)
+        let contact = &self.site.contact;
+        let unsolved = !contact.is_loaded() && self.analysis.pressure.is_none();
+        contact
+            .ellipse
+            .filter(|_| unsolved && contact.open_end().is_none())
+            .map(|ellipse| ellipse.pressure_n_per_mm2)
     }
 
     /// Lists why the contact of the part is infeasible or its patch empty.

@@ -34,6 +34,7 @@ pub(super) fn doubts_of(site: &Site, landmarks: &SideLandmarks, other: f64) -> V
     let first = contact.found.as_ref().is_none_or(|found| found.contact == 1);
     let standing = || usual::standing(marks_of(site, landmarks), &contact.placement, other);
     let mut out = if first { standing() } else { Vec::new() };
+    out.extend(contact.open_end().map(usual::profile_end));
     let rail = contact.placement.rail().profile();
     out.extend(contact.approach.and_then(|approach| usual::approach(rail, approach, contact.is_loaded())));
     out

@@ -182,6 +182,12 @@ fn pressure(found: &PartPressure) -> Value {
         "contact_area_mm2": found.contact_area,
         "normal_load_n": found.load,
         "cell_mm": found.cell,
+        "unbounded": found.unbounded.map(|found| json!({
+            "rail_x_mm": found.rail_x,
+            "at_mm": found.edge.at_mm,
+            "kink": found.edge.kink,
+            "rise_n_per_mm2": found.edge.rise_n_per_mm2,
+        })),
         "over_grid": found.field.is_some(),
         "on_grid": found.on_grid.map(|on| json!({
             "largest_n_per_mm2": on.largest,

@@ -5,10 +5,11 @@
 use std::ops::RangeInclusive;
 
 use super::doubts::{Doubt, DoubtKind};
+use super::ends::OpenEnd;
 use super::landmarks::{Landmarks, Touching};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
-use crate::profile::{Profile, points_along};
+use crate::profile::{Profile, Side, points_along};
 
 /// Steepest inclination that raises no doubt \[rad\]: 1:5.
 const STEEPEST: f64 = 0.2;
@@ -165,6 +166,13 @@ pub fn approach(rail: &Profile, approach: f64, estimated: bool) -> Option<Doubt>
     let height = Interval::around(points_along(rail, 1.0).iter().map(|at| at.y)).width();
     let beyond = if approach > height { ", more than the rail's profile is high" } else { "" };
     Some(Doubt::new(DoubtKind::Approach, format!("an approach of {approach:.4} mm{beyond}")))
+}
+
+/// Gives the doubt about an end of a profile in a contact.
+pub fn profile_end(end: OpenEnd) -> Doubt {
+    let body = if end.side == Side::Rail { "rail" } else { "wheel" };
+    let found = format!("{body}: its profile ends at x = {:.2} mm, in the contact", end.x);
+    Doubt::new(DoubtKind::ProfileEnd, found)
 }
 
 /// Gives the doubt about chosen points whose tangents differ by more than 2°.

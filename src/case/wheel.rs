@@ -28,6 +28,16 @@ pub(super) const SETTLED: f64 = 3e-4;
 /// Tolerance on the load that wheels carry, relative: below the error of the cells.
 const CARRIED: f64 = 2e-4;
 
+/// Largest difference of a load on cells half as wide, relative, that needs no finer cells: twice that of Hertz's ellipse. Flats, whose
+/// edges are narrower than cells, make up to 3 %.
+const ROUGH: f64 = 4e-3;
+
+/// Most times that cells are halved for a load along both axes, and along one.
+const MOST_HALVINGS: [u32; 2] = [2, 3];
+
+/// How often cells are halved, and along which axes.
+type Halved = (u32, [bool; 2]);
+
 /// A body that varies, and where the wheel stands.
 #[derive(Clone, Copy)]
 pub(super) struct OnLoft<'a> {
@@ -290,15 +300,17 @@ impl<'a> SinkingWheel<'a> {
         Ok(placement)
     }
 
-    /// Finds the regions under an approach of the first place with the normal forces that they carry.
-    fn pressed(&mut self, first_approach: f64, modulus: f64) -> Result<Vec<ContactRegion>> {
-        let mut regions = self.regions(first_approach)?;
+    /// Finds the normal forces that regions carry, and their pressures, on cells that are halved so many times along some axes.
+    fn press(&mut self, regions: &mut [ContactRegion], modulus: f64, (halvings, axes): Halved) -> Result<()> {
         let mut spaces = Vec::new();
-        for region in &regions {
+        for region in &*regions {
             let place = &self.places[region.place];
             let y = place.y + region.placement.ahead();
             for (k, extent) in region.extents.iter().enumerate() {
-                let space = HalfSpace::over(&region.placement, extent, region.approach);
+                let mut space = HalfSpace::over(&region.placement, extent, region.approach);
+                for _ in 0..halvings {
+                    space = space.finer(&region.placement, region.approach, axes)?;
+                }
                 let [xi, eta] = space.middle();
                 let (middle, normal) = in_space(&region.placement, y, [xi, eta]);
                 let region = match place.known.get(k) {
@@ -309,12 +321,12 @@ impl<'a> SinkingWheel<'a> {
             }
         }
         let mut pressed = press(&spaces, SETTLED, modulus)?.into_iter();
-        for region in &mut regions {
+        for region in regions {
             region.pressures = pressed.by_ref().take(region.extents.len()).collect();
             region.loads = region.pressures.iter().map(Pressures::load).collect();
             self.places[region.place].known.clone_from(&region.pressures);
         }
-        Ok(regions)
+        Ok(())
     }
 
     /// Estimates the vertical displacement of the wheel \[mm\] under a load \[N\] from Hertz's ellipse at the first place.
@@ -350,8 +362,8 @@ fn upright(placement: &Placement) -> Result<Placement> {
 /// `None` if they would have to sink by more than `most` \[mm\].
 ///
 /// Method: secants over half-spaces of every region; those of a wheel press upon each other. The forces are scaled at the end by what
-/// the search leaves, 2e-4.
-/// Accuracy: see the table in [`docs::loads`](crate::docs::loads). Cost: three half-spaces and patches a region.
+/// the search leaves, 2e-4. Where cells half as wide carry another load, the search goes on with them.
+/// Accuracy: see the table in [`docs::loads`](crate::docs::loads). Cost: four half-spaces and patches a region.
 ///
 /// # Errors
 /// The errors of [`SinkingWheel::regions`]; pressures that do not settle.
@@ -374,16 +386,58 @@ pub(super) fn carry(
     for wheel in wheels.iter_mut() {
         guess += wheel.guess(load / count, modulus)? / count;
     }
+    let Some((mut depth, mut all)) = sinks(wheels, load, modulus, (guess, most), (0, [true; 2]))? else {
+        return Ok(None);
+    };
+    let rough = all.iter().flatten().flat_map(|region| &region.pressures).map(Pressures::rough_axes);
+    let axes = rough.reduce(|a, b| [a[0] || b[0], a[1] || b[1]]).unwrap_or([true; 2]);
+    let most_halvings = MOST_HALVINGS[usize::from(axes != [true; 2])];
+    for halvings in (1..=most_halvings).map(|halvings| (halvings, axes)) {
+        let mut finer = all.clone();
+        for (wheel, regions) in wheels.iter_mut().zip(&mut finer) {
+            wheel.press(regions, modulus, halvings)?;
+        }
+        if (vertical(&finer) / load - 1.0).abs() <= ROUGH {
+            break;
+        }
+        let Some(found) = sinks(wheels, load, modulus, (depth, most), halvings)? else { return Ok(None) };
+        (depth, all) = found;
+    }
+    let scale = load / vertical(&all);
+    for regions in &mut all {
+        regions.iter_mut().flat_map(|region| &mut region.loads).for_each(|load| *load *= scale);
+        // A region that the others press down by more than its overlap does not touch.
+        let mut first = true;
+        regions.retain(|region| std::mem::take(&mut first) || region.vertical() > 0.0);
+    }
+    Ok(Some(all))
+}
+
+/// Gives the vertical part of all normal forces \[N\].
+fn vertical(all: &[Vec<ContactRegion>]) -> f64 {
+    all.iter().flatten().map(ContactRegion::vertical).sum()
+}
+
+/// Sinks wheels together, from a guess on and by at most so much \[mm\], until they carry a load; gives by how much, and the regions.
+fn sinks(
+    wheels: &mut [SinkingWheel<'_>],
+    load: f64,
+    modulus: f64,
+    (guess, most): (f64, f64),
+    halvings: Halved,
+) -> Result<Option<(f64, Vec<Vec<ContactRegion>>)>> {
     let mut failure = None;
     let mut sink = |sunk: f64| -> Vec<Vec<ContactRegion>> {
-        let pressed = wheels.iter_mut().map(|wheel| wheel.pressed(sunk * wheel.places[0].cos, modulus));
+        let pressed = wheels.iter_mut().map(|wheel| {
+            let mut regions = wheel.regions(sunk * wheel.places[0].cos)?;
+            wheel.press(&mut regions, modulus, halvings)?;
+            Ok(regions)
+        });
         pressed.collect::<Result<_>>().unwrap_or_else(|error| {
             failure = Some(error);
             Vec::new()
         })
     };
-    let vertical =
-        |all: &[Vec<ContactRegion>]| all.iter().flatten().map(ContactRegion::vertical).sum::<f64>();
     // The solution is mostly the last trial.
     let mut last = (f64::NAN, Vec::new());
     let total = |sunk| {
@@ -391,18 +445,6 @@ pub(super) fn carry(
         vertical(&last.1)
     };
     let found = under_total(total, load, guess, most, CARRIED);
-    let regions = found.map(|sunk| if last.0 == sunk { last.1 } else { sink(sunk) });
-    if let Some(error) = failure {
-        return Err(error);
-    }
-    Ok(regions.map(|mut all| {
-        let scale = load / vertical(&all);
-        for regions in &mut all {
-            regions.iter_mut().flat_map(|region| &mut region.loads).for_each(|load| *load *= scale);
-            // A region that the others press down by more than its overlap does not touch.
-            let mut first = true;
-            regions.retain(|region| std::mem::take(&mut first) || region.vertical() > 0.0);
-        }
-        all
-    }))
+    let regions = found.map(|sunk| if last.0 == sunk { last } else { (sunk, sink(sunk)) });
+    failure.map_or(Ok(regions), Err)
 }

@@ -41,7 +41,7 @@ pub use build::{Loft, LoftSlice, SPACING};
 pub use framed::{Feet, FramedLoft, LoftFoot};
 pub use joining::Joining;
 pub(crate) use section::section_through;
-pub use section::{joined, section};
+pub use section::{ends, joined, section};
 pub use space::{Laid, SpacePoint};
 pub(crate) use space::{directions, on_wheel};
 pub use strip::{Bay, LoftStrip};

@@ -56,6 +56,17 @@ pub fn joined(loft: &Loft, strip: usize, y: f64) -> Vec<usize> {
     run
 }
 
+/// Lists the points (x, z) \[mm\] at y \[mm\] at which the surface ends across; an end of several parts may come several times.
+pub fn ends(loft: &Loft, y: f64) -> Vec<[f64; 2]> {
+    let here = (0..loft.strips.len()).filter(|&k| loft.strips[k].holds(y));
+    let both = here.filter_map(|k| {
+        let run = joined(loft, k, y);
+        let (first, last) = (&loft.strips[*run.first()?], &loft.strips[*run.last()?]);
+        Some([first.point(0.0, y).at, last.point(last.cells() as f64, y).at])
+    });
+    both.flatten().collect()
+}
+
 /// Makes the segments of a strip's cells at y \[mm\]; cells without length are left out. Where the cubics are not the surface itself, one
 /// begins at u, too.
 fn spans(strip: &LoftStrip, u: f64, y: f64) -> Vec<Result<Segment>> {

@@ -13,8 +13,8 @@ use super::setup::setup;
 use super::side_data::SideData;
 use super::sides::profiles;
 use crate::case::{
-    ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, Landmarks, OutputFormat, Outputs, Profiles,
-    Question, SideLandmarks, SideProfiles,
+    ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question,
+    SideLandmarks,
 };
 use crate::conformal::Reference;
 use crate::error::{Error, Result, finite};
@@ -76,8 +76,7 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     if let Some(side) = profiles.varying().next() {
         asked_of_varying(LoftedBody::name(side), &question)?;
     }
-    let of = |own: &SideProfiles| Landmarks::new(&own.pair);
-    let landmarks = SideLandmarks::new(of(&profiles.right), profiles.left.as_ref().map(of));
+    let landmarks = SideLandmarks::of(&profiles);
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles, &landmarks));
     Ok(Case { profiles, setup, question, axes, outputs, echo, file: None, landmarks, doubts })
 }

@@ -8,8 +8,8 @@ use super::progress::Progress;
 use super::range::{range, range_in};
 use crate::answer::{Outcome, complain, counted, folder_of, print_to_reader};
 use wheelrail::case::{
-    ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, MarchStop, append_event,
-    cut_off_warning, events_head, hole_warning, march_head,
+    ALONG, AROUND, DrawnMarch, ListedEvents, MOST_DRAWN, MarchColumns, MarchCourse, MarchStop, Tally,
+    append_event, cut_off_warning, events_head, hole_warning, march_head,
 };
 use wheelrail::error::Result;
 use wheelrail::files::NewFile;
@@ -135,6 +135,7 @@ struct Marched {
     holes: usize,
     /// Stops with a patch that the end of the slices cuts off.
     cut_off: usize,
+    doubts: Tally,
     /// The rows of the stops that were taken last.
     rows: MarchColumns,
     /// The rows of the stops that are drawn, which are numbered among themselves.
@@ -151,7 +152,20 @@ impl Marched {
         }
         let (rows, drawn, events) = Default::default();
         let stride = all.div_ceil(MOST_DRAWN).max(1);
-        Ok(Self { outputs, all, stride, done: 0, without: 0, holes: 0, cut_off: 0, rows, drawn, events })
+        let doubts = Tally::default();
+        Ok(Self {
+            outputs,
+            all,
+            stride,
+            done: 0,
+            without: 0,
+            holes: 0,
+            cut_off: 0,
+            doubts,
+            rows,
+            drawn,
+            events,
+        })
     }
 
     /// Takes the next stops, and the events up to them. Returns whether more are wanted.
@@ -164,6 +178,7 @@ impl Marched {
             self.holes += usize::from(hole);
             self.without += usize::from(stop.rows.is_empty() && !hole);
             self.cut_off += usize::from(stop.rows.iter().any(|row| row.cut_off));
+            self.doubts.add(stop.rows.iter().map(|row| (&row.row, row.doubts)));
             if self.outputs.draws() && self.done.is_multiple_of(self.stride) {
                 self.drawn.push(self.done / self.stride, stop);
             }
@@ -197,7 +212,7 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     let mut marched = Marched::new(outputs, course, places.len())?;
     progress.at(format!("0 of {} places", places.len()));
     case.blocks(course, &places, |stops, events| marched.take(stops, events, &progress))?;
-    let Marched { mut outputs, stride, without, holes, cut_off, drawn, events, .. } = marched;
+    let Marched { mut outputs, stride, without, holes, cut_off, doubts, drawn, events, .. } = marched;
     let shown: Vec<f64> = places.iter().copied().step_by(stride).collect();
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let number = counted(places.len(), "place");
@@ -212,6 +227,10 @@ pub(super) fn march(arguments: &MarchArguments) -> Result<Outcome> {
     }
     for warning in hole_warning(holes).into_iter().chain(cut_off_warning(cut_off)) {
         complain(&format!("march: {warning}"));
+    }
+    let radius = |side| case.profiles.on(Some(side)).pair.wheel_radius();
+    if let Some(line) = doubts.line(places.len(), radius) {
+        complain(&format!("march: {line}"));
     }
     Ok(Outcome::Done)
 }

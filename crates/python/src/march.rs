@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use wheelrail::Error;
 use wheelrail::case::{
-    ALONG, AROUND, EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, MarchStop, cut_off_warning, event_numbers,
-    hole_warning,
+    ALONG, AROUND, EVENT_NUMBERS, MARCH_NUMBERS, MarchColumns, MarchStop, Tally, cut_off_warning,
+    event_numbers, hole_warning,
 };
 use wheelrail::scene;
 use wheelrail::search::Event;
@@ -78,20 +78,23 @@ pub(crate) fn march<'py>(
         let folder = path.parent().unwrap_or(std::path::Path::new("."));
         let case = scene::march(&scene, folder)?;
         let (mut rows, mut events, mut done) = (MarchColumns::default(), Vec::new(), 0);
-        let (mut cut_off, mut holes) = (0, 0);
+        let (mut cut_off, mut holes, mut doubts) = (0, 0, Tally::default());
         case.blocks(course, &along, |stops: &[MarchStop], found: &[Event]| {
             for stop in stops {
                 rows.push(done, stop);
                 holes += usize::from(stop.holes.contains(&true));
                 cut_off += usize::from(stop.rows.iter().any(|row| row.cut_off));
+                doubts.add(stop.rows.iter().map(|row| (&row.row, row.doubts)));
                 done += 1;
             }
             events.extend_from_slice(found);
             watch.at(done, along.len());
             watch.go_on().map(|()| true)
         })?;
+        let radius = |side| case.profiles.on(Some(side)).pair.wheel_radius();
+        let doubts = doubts.line(along.len(), radius);
         let mut warnings = case.warnings;
-        warnings.extend(hole_warning(holes).into_iter().chain(cut_off_warning(cut_off)));
+        warnings.extend(hole_warning(holes).into_iter().chain(cut_off_warning(cut_off)).chain(doubts));
         Ok((rows, events, warnings))
     })?;
     for warning in &warnings {

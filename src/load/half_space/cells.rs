@@ -77,6 +77,36 @@ impl Cells {
         Self { from, step: self.step.map(|step| 2.0 * step), count: self.count.map(|n| n.div_ceil(2)) }
     }
 
+    /// Gives cells over the same area whose sides are half as long along some axes.
+    ///
+    /// # Errors
+    /// More than four million.
+    pub(super) fn halved(&self, axes: [bool; 2]) -> Result<Self> {
+        let side = |k: usize| Interval::new(self.from[k], self.from[k] + self.step[k] * self.count[k] as f64);
+        let count = [0, 1].map(|k| self.count[k].saturating_mul(if axes[k] { 2 } else { 1 }));
+        Self::over(&Window { xi: side(0), eta: side(1) }, count)
+    }
+
+    /// Gives the values of all cells, linearly between the middles of `known` ones over the same area.
+    pub(super) fn between(&self, known: &Self, values: &[f64]) -> Vec<f64> {
+        let near = |axis: usize, k: usize| {
+            let last = known.count[axis] - 1;
+            let at = (k as f64 + 0.5) * known.count[axis] as f64 / self.count[axis] as f64 - 0.5;
+            let at = at.clamp(0.0, last as f64);
+            (at as usize, (at as usize + 1).min(last), at.fract())
+        };
+        let row: Vec<_> = (0..self.count[1]).map(|j| near(1, j)).collect();
+        let column = |i: usize| {
+            let (i0, i1, u) = near(0, i);
+            let at = |i: usize, j: usize| values[i * known.count[1] + j];
+            let along =
+                move |i: usize, (j0, j1, v): (usize, usize, f64)| (1.0 - v) * at(i, j0) + v * at(i, j1);
+            let value = |j: &(usize, usize, f64)| (1.0 - u) * along(i0, *j) + u * along(i1, *j);
+            row.iter().map(value).collect::<Vec<_>>()
+        };
+        (0..self.count[0]).flat_map(column).collect()
+    }
+
     /// Keeps every second value along both axes.
     pub(super) fn thinned(&self, values: &[f64]) -> Vec<f64> {
         let columns = values.chunks_exact(self.count[1]).step_by(2);

@@ -4,6 +4,7 @@
 //! u = 1/(π E*) ∬ p/r (Boussinesq).
 
 mod cells;
+mod edges;
 mod influence;
 mod pressures;
 mod settle;
@@ -16,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::patch::Window;
 use crate::placement::Placement;
 pub use cells::Cells;
+pub use edges::Edge;
 use influence::Influence;
 pub use pressures::{Largest, Pressures};
 use settle::System;
@@ -66,12 +68,23 @@ impl HalfSpace {
         Ok(Self { cells, depth, start })
     }
 
-    /// Lets the search begin at the pressures of another approach. Pressures on another number of cells are ignored.
+    /// Lets the search begin at the pressures of another approach, or on other cells over the region.
     pub fn beginning_at(mut self, known: &Pressures) -> Self {
         if known.cells.count == self.cells.count {
             self.start.copy_from_slice(&known.relative);
+        } else {
+            self.start = self.cells.between(&known.cells, &known.relative);
         }
         self
+    }
+
+    /// Makes the half-space of the same region on cells that are half as wide along some axes, under the approach δ \[mm\] of both.
+    ///
+    /// # Errors
+    /// More than four million cells.
+    pub fn finer(&self, placement: &Placement, approach: f64, axes: [bool; 2]) -> Result<Self> {
+        let cells = self.cells.halved(axes)?;
+        Self::new(cells, &cells.separations(placement), approach)
     }
 
     /// Places the region by itself, so that no other region presses upon it.
@@ -164,6 +177,24 @@ pub fn on_wider_cells(solved: &Pressures, tolerance: f64) -> Result<Pressures> {
     let Pressures { cells, depth, relative, unit, .. } = solved;
     let own = HalfSpace { cells: *cells, depth: depth.clone(), start: relative.clone() };
     Ok(press(&[own.wider().alone()], tolerance, unit / PI)?.swap_remove(0))
+}
+
+/// Solves a region again on cells half as wide along its [`Pressures::rough_axes`]; δ \[mm\] is its approach, and what other regions have
+/// pressed down stays. The tolerance is that of [`press`]. Cost: up to five times that of the solution.
+///
+/// # Errors
+/// The errors of [`press`], and more than four million cells.
+pub fn on_finer_cells(
+    placement: &Placement,
+    solved: &Pressures,
+    approach: f64,
+    tolerance: f64,
+) -> Result<Pressures> {
+    let Pressures { cells, relative, unit, lowered, .. } = solved;
+    let own = HalfSpace { cells: *cells, depth: Vec::new(), start: relative.clone() };
+    let finer = own.finer(placement, approach - lowered, solved.rough_axes())?.beginning_at(solved);
+    let found = press(&[finer.alone()], tolerance, unit / PI)?.swap_remove(0);
+    Ok(Pressures { lowered: *lowered, ..found })
 }
 
 /// Solves half-spaces that press upon each other for their pressures; `modulus` is E* \[N/mm²\].

@@ -1,9 +1,18 @@
 //! Solved pressures and what is read from them: load, true contact area, largest pressure.
 
+use std::f64::consts::PI;
+
 use super::cells::Cells;
 
 /// Relative error of the largest pressure per violation of contact's conditions relative to δ; up to 4 was seen on ellipses.
 const UNSETTLED: f64 = 5.0;
+
+/// Error of the pressure per slope of s that cells leave out, as a share of E*: of the fourth difference of s over the side of a cell. It
+/// is half of the largest seen where the curvature of s jumps on cells of 1/16 of the contact.
+const ROUGH: f64 = 0.05;
+
+/// Rise of the largest pressure by what cells do not show, relative, from which on they are too wide along that axis.
+const MUCH: f64 = 0.01;
 
 /// The largest pressure of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,12 +121,50 @@ impl Pressures {
     /// Estimates the error of the largest pressure \[N/mm²\] from that on cells twice as wide, the violation that the search left, and the
     /// height of the parabolas' top over the largest cell: 1 % beside a jump of curvature, where pressures have a corner.
     ///
+    /// What cells do not show of s adds to it, by how far the pressure there may pass the largest one: see [`Self::hidden`].
+    ///
     /// The estimate is some three times the error where pressures are smooth, and about the error where the curvature of s jumps. At a
-    /// kink of s the pressure has no bound, and grows with every finer grid.
+    /// kink of s the pressure has no bound, and grows with every finer grid: [`Self::unbounded`] finds them.
     pub fn largest_error(&self, wider: &Self) -> f64 {
         let [here, there] = [self, wider].map(|pressures| pressures.largest().pressure_n_per_mm2);
         let of_cells = self.unit * self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
-        (here - there).abs() + (here - of_cells) + UNSETTLED * self.violation * here
+        let hidden = self.hidden();
+        (here - there).abs()
+            + (here - of_cells)
+            + UNSETTLED * self.violation * here
+            + hidden[0].max(hidden[1])
+    }
+
+    /// Tells along which axes cells are too wide: those along which s turns between them, or both where it does so along neither.
+    pub fn rough_axes(&self) -> [bool; 2] {
+        let (hidden, largest) = (self.hidden(), self.largest().pressure_n_per_mm2);
+        let most = hidden[0].max(hidden[1]);
+        hidden.map(|own| most <= MUCH * largest || own >= 0.5 * most)
+    }
+
+    /// Estimates by how much the pressure may pass the largest one \[N/mm²\] where neighbouring cells along ξ and along η do not follow each
+    /// other smoothly: a fourth difference of s means a turn between cells, of a short arc or of a jump of curvature.
+    fn hidden(&self) -> [f64; 2] {
+        let [columns, rows] = self.cells.count;
+        let turn = |at: usize, stride: usize| {
+            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k| self.depth[at + k * stride - 2 * stride]);
+            let known = [a, b, c, d, e].iter().all(|depth| *depth > 0.0);
+            known.then(|| (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs())
+        };
+        let largest = self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
+        let mut most = [largest; 2];
+        for at in (0..self.relative.len()).filter(|&at| self.relative[at] > 0.0) {
+            let axes = [(at / rows, columns, rows), (at % rows, rows, 1)];
+            for (k, (place, count, stride)) in axes.into_iter().enumerate() {
+                let inside = place >= 2 && place + 2 < count;
+                let turn = inside.then(|| turn(at, stride)).flatten();
+                // A smooth contact ends before the overlap, and carries little there.
+                let here = self.relative[at];
+                let rise = turn.map_or(here, |turn| ROUGH * turn / (PI * self.cells.step[k]));
+                most[k] = most[k].max(here + rise);
+            }
+        }
+        most.map(|most| self.unit * (most - largest))
     }
 }
 

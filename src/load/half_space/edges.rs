@@ -1,0 +1,193 @@
+//! Edges in a contact: kinks and steps of s at which the elastic pressure has no bound.
+
+use std::f64::consts::{LN_2, PI};
+
+use super::pressures::Pressures;
+use crate::numerics::interval::Interval;
+use crate::placement::Placement;
+use crate::separation::Evaluator;
+
+/// Lines along either axis on which edges are looked for: edges cross the contact along either of the axes.
+const LINES: usize = 5;
+
+/// Most parts into which a line is divided; each is halved as long as s turns enough in it.
+const PARTS: usize = 64;
+
+/// Width \[mm\] in which s turns at an edge. A rounding of the edge with this radius or more is seen as one.
+const SHARP: f64 = 1e-6;
+
+/// Least step of s \[mm\] at which a surface ends. Gaps between segments are a thousand times smaller.
+const STEP: f64 = 1e-4;
+
+/// ln 1000. An edge counts if its pressure passes the largest one on cells of a thousandth of the sides: smaller ones are no
+/// continuum.
+const FINEST: f64 = 6.9;
+
+/// How much an edge raises the largest pressure, relative, before it counts: that is the error of the cells.
+const RISE: f64 = 0.01;
+
+/// Growth of p/(π E*) at an edge wherever cells are e times smaller, per change of slope.
+const GROWTH: f64 = 0.5 / (PI * PI);
+
+/// An edge in the contact, along ξ or η, at which the surfaces press into each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// ξ and η \[mm\].
+    pub at_mm: [f64; 2],
+    /// Change of the slope of s along the line across it \[1\], > 0; infinite where a surface ends.
+    pub kink: f64,
+    /// Rise of its pressure where cells are half as wide \[N/mm²\].
+    pub rise_n_per_mm2: f64,
+}
+
+/// An edge on a line of cells: its place \[mm\], the change of slope, and p/(π E*) on cells of a thousandth and of half the sides less that
+/// of the cells.
+#[derive(Debug, Clone, Copy)]
+struct OnLine {
+    t: f64,
+    kink: f64,
+    reached: f64,
+    rise: f64,
+}
+
+impl Pressures {
+    /// Finds the edge in the contact whose pressure passes all others on fine cells: there is then no largest pressure. `None` where the
+    /// largest pressure has a bound.
+    ///
+    /// Method: on a line across an edge at which the slope of s rises by Δ, p grows by E* Δ/2π wherever cells are e times smaller, since
+    /// that of a plane wedge is E* Δ/2π ln(1/ξ). Where the slope rises, the line is halved until the rest is 1e-6 mm wide. Where a surface
+    /// ends beside cells whose pressures rise towards it, p grows with the root, as under a punch.
+    /// Cost: 1000 values of s. An edge that meets none of five lines across the contact along either axis is missed.
+    pub fn unbounded(&self, placement: &Placement) -> Option<Edge> {
+        let mut evaluator = Evaluator::new(placement);
+        let most = self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
+        let mut worst: Option<(f64, Edge)> = None;
+        for axis in [0, 1] {
+            for line in self.lines(axis, most) {
+                let across = self.cells.middle(1 - axis, line as f64);
+                let point = |t: f64| if axis == 0 { [t, across] } else { [across, t] };
+                let mut gap = |t: f64| {
+                    let [xi, eta] = point(t);
+                    let (s, gradient) = evaluator.separation_and_gradient(xi, eta);
+                    [s, gradient[axis]]
+                };
+                let found = self.kinks(axis, line, most, &mut gap).into_iter();
+                for OnLine { t, kink, reached, rise } in found.chain(self.steps(axis, line, &mut gap)) {
+                    let passes = reached > worst.map_or((1.0 + RISE) * most, |(passed, _)| passed);
+                    if passes {
+                        worst =
+                            Some((reached, Edge { at_mm: point(t), kink, rise_n_per_mm2: rise * self.unit }));
+                    }
+                }
+            }
+        }
+        worst.map(|(_, edge)| edge)
+    }
+
+    /// Gives p/(π E*) \[1\] of a cell of a line along an axis; 0 beyond the cells.
+    fn on_line(&self, axis: usize, line: usize, cell: usize) -> f64 {
+        let [i, j] = if axis == 0 { [cell, line] } else { [line, cell] };
+        if cell < self.cells.count[axis] { self.relative[i * self.cells.count[1] + j] } else { 0.0 }
+    }
+
+    /// Lists the kinks on a line of cells that pass the largest pressure, `most`; `gap` gives s and its slope.
+    fn kinks(
+        &self,
+        axis: usize,
+        line: usize,
+        most: f64,
+        gap: &mut impl FnMut(f64) -> [f64; 2],
+    ) -> Vec<OnLine> {
+        let Some([first, last]) = self.pressed(axis, line) else { return Vec::new() };
+        let range =
+            Interval::new(self.cells.middle(axis, first as f64), self.cells.middle(axis, last as f64));
+        let cell = |t: f64| ((t - self.cells.from[axis]) / self.cells.step[axis]) as usize;
+        let at = |k: usize| range.low + range.width() * k as f64 / PARTS as f64;
+        let (mut out, [_, mut from]) = (Vec::new(), gap(range.low));
+        for k in 0..PARTS {
+            let part = Interval::new(at(k), at(k + 1));
+            let [_, to] = gap(part.high);
+            let here = part.ends().map(|t| self.on_line(axis, line, cell(t))).into_iter().fold(0.0, f64::max);
+            let least = ((1.0 + RISE) * most - here) / (FINEST * GROWTH);
+            if here > 0.0 {
+                out.extend(kink(gap, part, [from, to], least).map(|(t, kink)| {
+                    let reached = here + FINEST * GROWTH * kink;
+                    OnLine { t, kink, reached, rise: LN_2 * GROWTH * kink }
+                }));
+            }
+            from = to;
+        }
+        out
+    }
+
+    /// Lists the ends of a surface on a line of cells towards which the pressures rise.
+    fn steps(&self, axis: usize, line: usize, gap: &mut impl FnMut(f64) -> [f64; 2]) -> Vec<OnLine> {
+        let Some([first, last]) = self.pressed(axis, line) else { return Vec::new() };
+        let (step, ends) =
+            (self.cells.step[axis], [(first, first + 1, -1.0), (last, last.wrapping_sub(1), 1.0)]);
+        let found = ends.into_iter().filter_map(|(end, before, outwards)| {
+            let pressure = self.on_line(axis, line, end);
+            let t = self.cells.middle(axis, end as f64);
+            let t = (pressure > self.on_line(axis, line, before))
+                .then(|| surface_end(gap, [t, t + outwards * step]))??;
+            let root = |finer: f64| pressure * finer.sqrt();
+            Some(OnLine { t, kink: f64::INFINITY, reached: root(FINEST.exp()), rise: root(2.0) - pressure })
+        });
+        found.collect()
+    }
+
+    /// Lists the lines of cells along an axis on which edges are looked for: that of the largest pressure, and some spread over the contact.
+    fn lines(&self, axis: usize, most: f64) -> Vec<usize> {
+        let [columns, rows] = self.cells.count;
+        let number = |cell: usize| if axis == 0 { cell % rows } else { cell / rows };
+        let pressed = || (0..columns * rows).filter(|&cell| self.relative[cell] > 0.0).map(number);
+        let (Some(first), Some(last)) = (pressed().min(), pressed().max()) else { return Vec::new() };
+        let largest = self.relative.iter().position(|p| *p == most).map(number);
+        let spread = (1..LINES).map(|k| first + (last - first) * k / LINES);
+        largest.into_iter().chain(spread).collect()
+    }
+
+    /// Gives the first and the last cell of a line that is pressed; `None` of fewer than two.
+    fn pressed(&self, axis: usize, line: usize) -> Option<[usize; 2]> {
+        let mut on = (0..self.cells.count[axis]).filter(|&k| self.on_line(axis, line, k) > 0.0);
+        let first = on.next()?;
+        Some([first, on.next_back()?])
+    }
+}
+
+/// Finds the place in a part of a line \[mm\] at which a slope rises at once by at least `least`, with its rise there; `slopes` are those
+/// at both ends. Of several such places it is the one in the halves that rise most.
+fn kink(
+    gap: &mut impl FnMut(f64) -> [f64; 2],
+    mut part: Interval,
+    mut slopes: [f64; 2],
+    least: f64,
+) -> Option<(f64, f64)> {
+    while slopes[1] - slopes[0] >= least {
+        let middle = part.low + 0.5 * part.width();
+        if part.width() <= SHARP || middle <= part.low || middle >= part.high {
+            return Some((middle, slopes[1] - slopes[0]));
+        }
+        let [_, here] = gap(middle);
+        let left = here - slopes[0] >= slopes[1] - here;
+        *(if left { &mut part.high } else { &mut part.low }) = middle;
+        slopes[usize::from(left)] = here;
+    }
+    None
+}
+
+/// Finds the place between two of a line \[mm\] at which s steps or ends; the first one has a surface.
+fn surface_end(gap: &mut impl FnMut(f64) -> [f64; 2], [mut inside, mut outside]: [f64; 2]) -> Option<f64> {
+    let [[mut here, _], [mut there, _]] = [gap(inside), gap(outside)];
+    while (outside - inside).abs() > SHARP {
+        let middle = inside + 0.5 * (outside - inside);
+        let [s, _] = gap(middle);
+        let beyond = s.is_nan() || (!there.is_nan() && (s - here).abs() > (there - s).abs());
+        if beyond {
+            (outside, there) = (middle, s);
+        } else {
+            (inside, here) = (middle, s);
+        }
+    }
+    (there.is_nan() || (there - here).abs() > STEP).then_some(inside)
+}
