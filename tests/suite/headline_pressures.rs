@@ -124,7 +124,7 @@ fn truth(part: &Part) -> Result<[f64; 2]> {
         Ok(press_alone(region, 3e-4, STEEL)?[0].largest().pressure_n_per_mm2)
     };
     let most = |share| {
-        let each = contact.pressures.iter().map(|own| of(own, share));
+        let mut each = contact.pressures.iter().map(|own| of(own, share));
         each.try_fold(0.0, |most, p| Ok::<_, wheelrail::Error>(f64::max(most, p?)))
     };
     let [coarse, fine] = [most(0.5)?, most(1.0)?];
