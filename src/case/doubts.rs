@@ -88,8 +88,8 @@ impl DoubtKind {
         Self::Lifted,
         Self::BeyondTread,
         Self::RollingRadius,
-        Self::ProfileEnd,
         Self::Hole,
+        Self::ProfileEnd,
     ];
 
     /// Gives the word that stands for the kind in tables.

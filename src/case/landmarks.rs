@@ -131,7 +131,8 @@ impl Landmarks {
         // R − z is the rolling radius.
         let off = !on_tip && !on_back && at.angles[0].abs() < TREAD && z.abs() > RADIUS_OFF;
         let lift = lifted.then_some(lift);
-        ContactDoubts([on_tip.then_some(x), on_back.then_some(x), lift, from_tip, off.then_some(-z), None])
+        let [tip, back, off] = [on_tip.then_some(x), on_back.then_some(x), off.then_some(-z)];
+        ContactDoubts([tip, back, lift, from_tip, off, None, None])
     }
 }
 
