@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::doubts::Doubt;
 use super::formats::{FormatFile, OutputFormat, Writer};
-use super::landmarks::SideLandmarks;
+use super::landmarks::{Landmarks, SideLandmarks};
 use crate::conformal::Reference;
 use crate::error::{Error, Result};
 use crate::load::{Elastic, effective_modulus};
@@ -84,6 +84,12 @@ impl Profiles {
     /// Makes the profiles of both sides from one drawn pair.
     pub fn drawn(pair: Pair) -> Self {
         Self { right: SideProfiles { pair, measured: Bodies::default(), varying: None }, left: None }
+    }
+
+    /// Finds the landmarks of both sides' pairs.
+    pub fn landmarks(&self) -> SideLandmarks {
+        let own = |side: &SideProfiles| Landmarks::varying(&side.pair, side.varying.as_ref());
+        SideLandmarks::new(own(&self.right), self.left.as_ref().map(own))
     }
 
     /// Lists which bodies vary: rails along the track, or wheels around their axle.

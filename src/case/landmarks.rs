@@ -4,7 +4,7 @@ use nalgebra::{Point2, UnitComplex};
 
 use super::doubts::ContactDoubts;
 use super::ends::OpenEnds;
-use super::input::{Profiles, SideProfiles};
+use crate::lofted::LoftedBody;
 use crate::measure::flange_back;
 use crate::numerics::interval::Interval;
 use crate::placement::{Pair, Placement};
@@ -100,10 +100,9 @@ impl Landmarks {
         Self { pair: pair.clone(), top, tip, reach, back, back_x, ends: OpenEnds::new(pair, None) }
     }
 
-    /// Finds the landmarks of a side's pair; the ends are those of its body that varies.
-    pub fn of(profiles: &SideProfiles) -> Self {
-        let ends = OpenEnds::new(&profiles.pair, profiles.varying.as_ref());
-        Self { ends, ..Self::new(&profiles.pair) }
+    /// Finds the landmarks of a pair one body of which varies; the ends are that body's.
+    pub fn varying(pair: &Pair, body: Option<&LoftedBody>) -> Self {
+        Self { ends: OpenEnds::new(pair, body), ..Self::new(pair) }
     }
 
     /// Gives x on the wheel \[mm\] of a contact at an open end of a profile; `None` of others.
@@ -161,11 +160,6 @@ impl SideLandmarks {
     /// Joins the landmarks of both sides' pairs; without left ones, both sides have one pair.
     pub fn new(right: Landmarks, left: Option<Landmarks>) -> Self {
         Self { right, left }
-    }
-
-    /// Finds the landmarks of both sides' pairs.
-    pub fn of(profiles: &Profiles) -> Self {
-        Self::new(Landmarks::of(&profiles.right), profiles.left.as_ref().map(Landmarks::of))
     }
 
     /// Finds the doubts about each row of a position; rows of further contacts have only that about ends of profiles.

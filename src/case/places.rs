@@ -350,7 +350,8 @@ fn rules(case: &Case, approach: ApproachBy, alone: bool) -> RegionRules {
 /// Says that no approach carries the load of a case.
 fn too_heavy(case: &Case, side: Option<TrackSide>) -> Error {
     let (key, load) = match case.question.approach {
-        Some(ApproachBy::AxleLoad(load)) => ("wheelset: load", load),
+        // Of both wheels, even where one of them alone was found not to carry its half.
+        Some(ApproachBy::AxleLoad(load)) => return unborne("wheelset: load", load, None),
         Some(ApproachBy::WheelLoad(load)) => ("patch: load", load),
         Some(ApproachBy::WheelLoads { left, .. }) if side == Some(TrackSide::Left) => ("left: load", left),
         Some(ApproachBy::WheelLoads { right, .. }) => ("right: load", right),

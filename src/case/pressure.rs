@@ -9,7 +9,9 @@ use super::site::Site;
 use super::usual;
 use crate::error::{Error, ErrorKind, Result};
 use crate::export::{Nodes, even_step};
-use crate::load::{Cells, Edge, HalfSpace, Largest, Pressures, on_finer_cells, on_wider_cells, press_alone};
+use crate::load::{
+    Cells, HalfSpace, Largest, Pressures, SharpEdge, on_finer_cells, on_wider_cells, press_alone, sharp_edge,
+};
 use crate::numerics::interval::Interval;
 use crate::patch::Window;
 use crate::placement::Placement;
@@ -73,13 +75,13 @@ impl OnGrid {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeOnRail {
     /// The kink of s.
-    pub edge: Edge,
+    pub edge: SharpEdge,
     /// Abscissa on the rail's profile \[mm\].
     pub rail_x: f64,
 }
 
 impl EdgeOnRail {
-    fn new(placement: &Placement, edge: Edge) -> Self {
+    fn new(placement: &Placement, edge: SharpEdge) -> Self {
         let [xi, eta] = edge.at_mm;
         let rail_x = match placement.lofted_rail() {
             Some(lofted) => {
@@ -225,7 +227,7 @@ impl PartPressure {
     }
 
     fn read(placement: &Placement, solved: &Pressures, wider: &Pressures) -> Self {
-        let unbounded = solved.unbounded(placement).map(|edge| EdgeOnRail::new(placement, edge));
+        let unbounded = sharp_edge(solved, placement).map(|edge| EdgeOnRail::new(placement, edge));
         let largest_error = if unbounded.is_some() { f64::INFINITY } else { solved.largest_error(wider) };
         Self {
             largest: solved.largest(),
@@ -270,7 +272,7 @@ impl PartPressure {
         let (p, error) = (self.largest.pressure_n_per_mm2, self.largest_error);
         let [xi, eta] = self.cell;
         if let Some(unbounded) = &self.unbounded {
-            let (said, Edge { kink, rise_n_per_mm2: rise, .. }) = (unbounded.said(), unbounded.edge);
+            let (said, SharpEdge { kink, rise_n_per_mm2: rise, .. }) = (unbounded.said(), unbounded.edge);
             let why = if kink.is_finite() {
                 format!("where the gap has a kink of {:.2} degrees", kink.to_degrees())
             } else {

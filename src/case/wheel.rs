@@ -69,7 +69,7 @@ pub(super) struct SinkingWheel<'a> {
 struct ReachedPlace {
     /// (x, z) on the rail \[mm\].
     rail: Point2<f64>,
-    placing: Placing,
+    placing: LazyPlacement,
     /// Vertical gap at first touch \[mm\].
     gap: f64,
     /// Cosine of the angle between its normal and the vertical.
@@ -81,7 +81,7 @@ struct ReachedPlace {
 }
 
 /// A place as a search found it, until the pair placed there is asked for.
-enum Placing {
+enum LazyPlacement {
     Found(search::Contact),
     Placed(Arc<Placement>),
 }
@@ -175,7 +175,7 @@ impl<'a> SinkingWheel<'a> {
     ) -> Self {
         let reached = |place: &search::Contact| ReachedPlace {
             rail: Point2::new(place.rail_x, place.rail_z),
-            placing: Placing::Found(*place),
+            placing: LazyPlacement::Found(*place),
             gap: place.gap,
             cos: place.upright(),
             y: place.y + on.map_or(0.0, |on| on.from),
@@ -191,7 +191,7 @@ impl<'a> SinkingWheel<'a> {
             rail: Point2::new(x, z),
             gap: 0.0,
             cos: placement.upright(),
-            placing: Placing::Placed(Arc::new(placement)),
+            placing: LazyPlacement::Placed(Arc::new(placement)),
             y: 0.0,
             known: Vec::new(),
         };
@@ -293,10 +293,10 @@ impl<'a> SinkingWheel<'a> {
 
     fn placement(&mut self, index: usize) -> Result<Arc<Placement>> {
         let placement = match &self.places[index].placing {
-            Placing::Placed(placement) => Arc::clone(placement),
-            Placing::Found(found) => Arc::new(placed_at(found, self.pair, self.on)?),
+            LazyPlacement::Placed(placement) => Arc::clone(placement),
+            LazyPlacement::Found(found) => Arc::new(placed_at(found, self.pair, self.on)?),
         };
-        self.places[index].placing = Placing::Placed(Arc::clone(&placement));
+        self.places[index].placing = LazyPlacement::Placed(Arc::clone(&placement));
         Ok(placement)
     }
 

@@ -9,7 +9,8 @@ mod weighted;
 pub use approach::under_total;
 pub use feasibility::{Feasibility, feasibility};
 pub use half_space::{
-    Cells, Edge, HalfSpace, Largest, Located, Pressures, on_finer_cells, on_wider_cells, press, press_alone,
+    Cells, HalfSpace, Largest, Located, Pressures, SharpEdge, on_finer_cells, on_wider_cells, press,
+    press_alone, sharp_edge,
 };
 pub use hertz::{
     Curvatures, Elastic, Ellipse, curvatures, curvatures_at, effective_modulus, quadratic_form_at,

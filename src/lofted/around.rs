@@ -7,10 +7,11 @@ use std::cmp::Ordering::Less;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::build::{Loft, LoftSlice};
+use super::build::Loft;
 use super::joining::Joining;
 use super::kept::{HeightForm, HeightStretch, SmoothCurve};
 use super::section::section;
+use super::slice::LoftSlice;
 use super::strip::LoftStrip;
 use crate::error::{Error, Result, finite};
 use crate::numerics::interval::Interval;

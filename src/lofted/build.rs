@@ -3,37 +3,18 @@
 use rayon::prelude::*;
 
 use super::joining::Joining;
-use super::parts::{PartRun, Parts, without_features};
+use super::parts::{ListParts, PartRun, without_features};
+use super::slice::{LoftSlice, SPACING};
 use super::strip::{Bay, LoftStrip};
 use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::numerics::interval::Interval;
-use crate::profile::{Mark, Profile, trace};
-
-/// Largest distance of the points across a slice \[mm\]: a spline through them is then off by 0.01 nm on a 13 mm radius, and by up to
-/// 0.15 µm beside the joint of that radius to a crown.
-pub const SPACING: f64 = 0.25;
+use crate::profile::{Mark, trace};
 
 /// Distance \[mm\] of the marks by which a slice is divided: cubics between them are off by 1e-5 nm on a 13 mm radius.
 const MARKS: f64 = 0.05;
 
 /// Most points of a surface; each takes 130 bytes.
 const MOST_POINTS: usize = 4_000_000;
-
-/// One slice of a list.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LoftSlice {
-    /// Position along the track \[mm\], or angle around a wheel \[rad\].
-    pub at: f64,
-    /// Its name in messages.
-    pub name: String,
-    /// Its curve, in the axes that all slices share.
-    pub profile: Profile,
-    /// Arc lengths of the features from the left end of the curve \[mm\], negative for one that the slice does not have; a last one
-    /// beyond the curve means its end. Empty for a list without features.
-    pub features: Vec<f64>,
-    /// Length \[mm\] of the polygon along which the features are given; `None` where that is the curve itself.
-    pub measured_along: Option<f64>,
-}
 
 /// The surface of a rail that varies along the track, or of a wheel that varies, developed and upside down.
 #[derive(Debug, Clone)]
@@ -65,10 +46,10 @@ impl Loft {
     pub fn new(slices: &[LoftSlice], joining: Joining) -> Result<Self> {
         check(slices)?;
         let divided = in_order(slices.par_iter().map(divide))?;
-        let Parts { runs, holes, mut warnings } = if slices[0].features.len() < 2 {
+        let ListParts { runs, holes, mut warnings } = if slices[0].features.len() < 2 {
             without_features(slices, &divided.iter().map(|slice| slice.marks.as_slice()).collect::<Vec<_>>())
         } else {
-            Parts { runs: of_features(&divided), ..Parts::default() }
+            ListParts { runs: of_features(&divided), ..ListParts::default() }
         };
         let (mut strips, mut total) = (Vec::new(), 0);
         for run in runs {

@@ -1,6 +1,6 @@
 //! The parts of slices without features: what neighbours have in common, what only one of them shows, and where a list defines no surface.
 
-use super::build::{LoftSlice, SPACING};
+use super::slice::{LoftSlice, SPACING};
 use crate::numerics::interval::Interval;
 use crate::profile::{Mark, beside};
 
@@ -24,7 +24,7 @@ pub(super) struct PartRun {
 
 /// The parts of a list.
 #[derive(Default)]
-pub(super) struct Parts {
+pub(super) struct ListParts {
     pub runs: Vec<PartRun>,
     /// Where between two slices the list defines no surface \[mm\].
     pub holes: Vec<Interval>,
@@ -40,8 +40,8 @@ type Common = [Interval; 2];
 /// An instrument may see a flank of one slice deeper down than that of its neighbour. What only one of them shows is a part of its own,
 /// which begins or ends there; its edge is followed through the other slices at equal shares of arc length, as their points are. Where
 /// slices differ otherwise, the list defines no surface between them.
-pub(super) fn without_features(slices: &[LoftSlice], marks: &[&[Mark]]) -> Parts {
-    let (mut parts, mut from, mut commons) = (Parts::default(), 0, Vec::new());
+pub(super) fn without_features(slices: &[LoftSlice], marks: &[&[Mark]]) -> ListParts {
+    let (mut parts, mut from, mut commons) = (ListParts::default(), 0, Vec::new());
     for k in 1..=slices.len() {
         let how = match marks.get(k).map(|next| common([marks[k - 1], next])) {
             Some(Ok(common)) => {

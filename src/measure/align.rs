@@ -6,6 +6,7 @@ use super::curve::{CurvePoint, MarkedCurve};
 use super::fit::{FITS, FittedMotion, NominalFit};
 use super::nominal::{Back, Nominal, back_of, from_tip, is_from_back, own_back};
 use super::options::{Align, MeasureOptions};
+use super::quantity::in_micrometres;
 use crate::numerics::interval::Interval;
 use crate::profile::{Side, Station};
 
@@ -210,10 +211,8 @@ fn fitted(
     let refused = refused(of_parts, found, least);
     let parts_fit = of_parts.rms <= LARGEST_RESIDUAL;
     let doubt = refused.clone().or_else(|| turned(turn, side));
-    let text = format!(
-        "{by}, over {length:.0} mm; moved by ({:.3}, {:.3}) mm, turned by {turn:.3} deg",
-        motion.x, motion.z
-    );
+    let [x, z, by_turn] = [motion.x, motion.z, turn].map(in_micrometres);
+    let text = format!("{by}, over {length:.0} mm; moved by ({x}, {z}) mm, turned by {by_turn} deg");
     let alignment = Alignment { align, text, residual: Some(rms), doubt };
     let curve = curve.placed(&motion);
     Ok(Aligned {

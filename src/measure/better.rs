@@ -1,4 +1,4 @@
-//! Finds the built-in profile that fits a measured one better than its nominal does.
+//! Finds the built-in profiles that fit a measured one better than its nominal does, or as well.
 
 use super::align::consensus;
 use super::curve::MarkedCurve;
@@ -10,8 +10,8 @@ use crate::profile::{Profile, Side, Station, standards};
 const STEP: f64 = 1.0;
 /// Share of the measured curve over which a nominal that fits is the right one.
 const ALL: f64 = 0.95;
-/// Share of the measured curve over which another profile that fits is the nominal: wear at one side makes a head that of a narrower
-/// rail, but does not spare the rest.
+/// Share of the measured curve over which another profile that fits is the nominal though the caller says which parts are not worn: wear
+/// at one side makes a head that of a narrower rail, but does not spare the rest.
 const NEARLY_ALL: f64 = 0.9;
 /// Length \[mm\] of the curve, and share of it, over which another profile has to fit beyond what the nominal fits to be named.
 const MORE: f64 = 20.0;
@@ -19,19 +19,23 @@ const MORE_SHARE: f64 = 0.15;
 /// Difference \[mm\] of such lengths that is none: of two the one with the smaller residual fits better.
 const AS_LONG: f64 = 5.0;
 
-/// A built-in profile that fits a measured curve at least as well as its nominal.
+/// A built-in profile that fits a measured curve as well as its nominal, and the motion that puts the curve on it.
 pub(super) struct Rival {
     pub profile: Profile,
-    /// The motion that puts the curve on it.
     pub motion: Station,
-    /// The rival by name, with both residuals, if it fits much better.
+}
+
+/// The built-in profiles that fit a measured curve as well as its nominal or better.
+pub(super) struct Rivals {
+    pub all: Vec<Rival>,
+    /// The best one by name, with both residuals, if it fits so much better that the nominal is probably another.
     pub better: Option<String>,
     /// Whether it fits nearly all of the curve, so that the nominal is another.
     pub is_nominal: bool,
 }
 
-/// Finds the built-in profile that fits best, if it fits over as great a length as the nominal or more.
-pub(super) fn rival(nominal: &Nominal, curve: &MarkedCurve, side: Side) -> Option<Rival> {
+/// Finds the built-in profiles that fit over as great a length as the nominal or more; `None` if the nominal fits nearly all.
+pub(super) fn rivals(nominal: &Nominal, curve: &MarkedCurve, side: Side) -> Option<Rivals> {
     let curve = curve.thinned(STEP);
     let length: f64 = curve.lengths().sum();
     let of = |profile: &Profile| consensus(&curve, &MarkedCurve::drawn(profile, STEP), side);
@@ -52,22 +56,21 @@ pub(super) fn rival(nominal: &Nominal, curve: &MarkedCurve, side: Side) -> Optio
         let profile = built_in(name)?;
         Some((of(&profile)?, name, profile))
     });
-    let others: Vec<_> = others.collect();
+    let mut others: Vec<_> = others.filter(|other| other.0.length >= fits - AS_LONG).collect();
     let longest = others.iter().map(|other| other.0.length).fold(0.0, f64::max);
-    let as_long = others.into_iter().filter(|other| other.0.length >= longest - AS_LONG);
-    let (best, name, profile) = as_long.min_by(|a, b| a.0.rms.total_cmp(&b.0.rms))?;
-    if best.length < fits {
-        return None;
-    }
+    let as_long = others.iter().filter(|other| other.0.length >= longest - AS_LONG);
+    let (best, name, _) = as_long.min_by(|a, b| a.0.rms.total_cmp(&b.0.rms))?;
     let text = |of: &FittedMotion| format!("{:.3} mm over {:.0} mm", of.rms, of.length);
     let better = (best.length >= fits + MORE.max(MORE_SHARE * length)).then(|| {
         let own = own.map_or_else(|| "nothing".to_owned(), |own| text(&own));
         format!(
             "{name} fits better, with a residual of {}, than the nominal {} with {own}: another nominal",
-            text(&best),
+            text(best),
             nominal.profile.name
         )
     });
     let is_nominal = better.is_some() && best.length >= NEARLY_ALL * length;
-    Some(Rival { profile, motion: best.motion, better, is_nominal })
+    others.retain(|(_, name, _)| *name != nominal.profile.name);
+    let all = others.into_iter().map(|(fit, _, profile)| Rival { profile, motion: fit.motion }).collect();
+    Some(Rivals { all, better, is_nominal })
 }

@@ -17,7 +17,8 @@ const ARM: f64 = 10.0;
 const LEAST_HOLD: f64 = 0.03;
 /// Largest number of passes until a motion is settled: each one leaves the square of the last one's error, or a tenth where the feet slide.
 const MOST_PASSES: usize = 200;
-/// Motion \[mm\] at which a fit is settled, a thousandth of the instrument's resolution.
+/// Motion \[mm\] at which a fit is settled, a ten-thousandth of the instrument's resolution; in the second half of the passes
+/// [`CHOSEN`] is enough: feet that jump between the marks of a nominal may move it to and fro by less, for ever.
 const SETTLED: f64 = 1e-6;
 /// Smallest and largest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
 pub(super) const FITS: Interval = Interval::new(0.005, 0.1);
@@ -64,7 +65,7 @@ impl NominalFit<'_> {
         let own: f64 =
             self.nominal.lengths().zip(self.parts).filter(|(_, part)| **part).map(|(l, _)| l).sum();
         if own == 0.0 {
-            return Err("the nominal has none of it".into());
+            return Err("the nominal has none of it: give one that has, or another alignment".into());
         }
         let near = |foot: usize, across: f64| self.parts[foot] && across.abs() <= FARTHEST;
         let fitted = self.settled(start, near, f64::INFINITY)?;
@@ -93,6 +94,7 @@ impl NominalFit<'_> {
     ) -> Result<FittedMotion, String> {
         let (mut motion, mut feet) = (start, Vec::new());
         let mut chosen: Option<Vec<bool>> = None;
+        let mut last = f64::INFINITY;
         for pass in 0..MOST_PASSES {
             let pairs = self.pairs(&motion, &mut feet, &belongs, chosen.as_deref(), fits);
             let Some(step) = step(&pairs) else {
@@ -101,11 +103,13 @@ impl NominalFit<'_> {
             let next = motion.placed_by(&step);
             let moved = apart(&motion, &next);
             motion = next;
-            if chosen.is_none() && (moved <= CHOSEN || 2 * pass >= MOST_PASSES) {
+            last = moved;
+            let late = 2 * pass >= MOST_PASSES;
+            if chosen.is_none() && (moved <= CHOSEN || late) {
                 let mut own = vec![false; self.measured.marks.len()];
                 pairs.iter().for_each(|pair| own[pair.measured] = true);
                 chosen = Some(own);
-            } else if moved <= SETTLED {
+            } else if moved <= if late { CHOSEN } else { SETTLED } {
                 let pairs = self.pairs(&motion, &mut feet, &belongs, chosen.as_deref(), fits);
                 let sum = |of: fn(&PointAndFoot) -> f64| pairs.iter().map(of).sum::<f64>();
                 let squares = sum(|pair| pair.weight * pair.across * pair.across);
@@ -114,7 +118,9 @@ impl NominalFit<'_> {
                 return Ok(FittedMotion { motion, rms, length: near.map(|pair| pair.length).sum() });
             }
         }
-        Err(format!("the fit is not settled after {MOST_PASSES} passes"))
+        Err(format!(
+            "the fit is not settled after {MOST_PASSES} passes: the last one moved it by {last:e} mm"
+        ))
     }
 
     /// Returns the places that belong, under a motion, or those that are chosen. `feet` are those of the last motion; the first search

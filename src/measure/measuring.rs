@@ -1,7 +1,7 @@
 //! Measures one profile: aligned, as it is, and moved as far as an alignment may be off.
 
 use super::align::{Aligned, align};
-use super::better::{self, Rival};
+use super::better::{self, Rival, Rivals};
 use super::curve::MarkedCurve;
 use super::found::FoundValues;
 use super::measures::Measures;
@@ -61,7 +61,7 @@ pub fn measure(
         Err(why) => return Ok(Measures::none(side, why)),
     };
     Ok(match laid(&curve, side, nominal.as_ref(), options) {
-        Ok(laid) => laid.beside_rival(&curve).measures(&curve, options),
+        Ok(laid) => laid.beside_rivals(&curve).measures(&curve, options),
         Err(why) => Measures::none(side, why),
     })
 }
@@ -73,8 +73,8 @@ pub(super) struct AlignedProfile<'a> {
     on_nominal: Option<(Aligned, &'a Nominal<'a>)>,
     /// Why there is no wear though there is a nominal.
     lost: Option<String>,
-    /// A built-in profile that fits as well as the nominal.
-    rival: Option<Rival>,
+    /// The built-in profiles that fit as well as the nominal.
+    rivals: Option<Rivals>,
     /// A fit on the nominal that gives no wear, but shows how the profile lies.
     shown: Option<Aligned>,
 }
@@ -100,7 +100,7 @@ pub(super) fn laid<'a>(
     }
     match (&own, &on_nominal) {
         (Err(why), None) => Err(lost.unwrap_or_else(|| why.clone())),
-        _ => Ok(AlignedProfile { side, own, on_nominal, lost, rival: None, shown }),
+        _ => Ok(AlignedProfile { side, own, on_nominal, lost, rivals: None, shown }),
     }
 }
 
@@ -120,35 +120,41 @@ fn alone(
 }
 
 impl AlignedProfile<'_> {
-    /// Withdraws the wear if another built-in profile fits better than the nominal, and keeps one that fits as well.
-    fn beside_rival(mut self, curve: &MarkedCurve) -> Self {
-        let found = self.on_nominal.as_ref();
-        self.rival = found.and_then(|(_, nominal)| better::rival(nominal, curve, self.side));
-        if let Some(other) = self.rival.as_ref().filter(|rival| rival.is_nominal) {
-            self.lost.clone_from(&other.better);
+    /// Withdraws the wear if another built-in profile fits better than the nominal, unless the caller says which parts are not worn, and
+    /// keeps those that fit as well.
+    fn beside_rivals(mut self, curve: &MarkedCurve) -> Self {
+        let Some((on, nominal)) = &self.on_nominal else { return self };
+        let by_all = on.alignment.align == Align::BestFit;
+        self.rivals = better::rivals(nominal, curve, self.side);
+        let other = self.rivals.as_ref().filter(|rivals| by_all || rivals.is_nominal);
+        if let Some(better) = other.and_then(|rivals| rivals.better.clone()) {
+            self.lost = Some(better);
             self.shown = self.on_nominal.take().map(|(on, _)| on);
         }
         self
     }
 
-    /// Measures the wear against a rival.
-    fn by_rival(&self, curve: &MarkedCurve, options: &MeasureOptions) -> Option<Values> {
-        let rival = self.rival.as_ref().filter(|_| self.on_nominal.is_some())?;
-        let nominal = Nominal::new(&rival.profile, self.side).ok()?;
-        Some(wear(self.side, &curve.placed(&rival.motion), &nominal, options).values())
+    /// Measures the wear against each rival.
+    fn by_rivals(&self, curve: &MarkedCurve, options: &MeasureOptions) -> Vec<ValueRow> {
+        let all = self.rivals.as_ref().filter(|_| self.on_nominal.is_some()).map(|rivals| &rivals.all);
+        let by = |rival: &Rival| {
+            let nominal = Nominal::new(&rival.profile, self.side).ok()?;
+            Some(wear(self.side, &curve.placed(&rival.motion), &nominal, options).values())
+        };
+        all.into_iter().flatten().filter_map(by).collect()
     }
 
     fn measures(self, curve: &MarkedCurve, options: &MeasureOptions) -> Measures {
         let found = self.found(options);
         let if_off = self.if_off(curve, options, found.values());
-        let Self { side, own, on_nominal, lost, rival, .. } = self;
+        let Self { side, own, on_nominal, lost, rivals, .. } = self;
         let lost = lost.map(|why| format!("{why}: no wear, the rest in its own axes"));
         let alignments =
             own.into_iter().map(|own| own.alignment).chain(on_nominal.map(|(on, _)| on.alignment));
         let mut alignments: Vec<_> = alignments.collect();
         let mut doubts: Vec<String> = alignments.iter().filter_map(|of| of.doubt.clone()).collect();
         doubts.dedup();
-        doubts.extend(rival.filter(|_| lost.is_none()).and_then(|rival| rival.better));
+        doubts.extend(rivals.filter(|_| lost.is_none()).and_then(|rivals| rivals.better));
         let findings =
             lost.into_iter().chain(doubts).chain(gains(found.values())).chain(found.findings()).collect();
         let alignment = alignments.pop().map(|mut last| {
@@ -182,10 +188,10 @@ impl AlignedProfile<'_> {
     }
 
     /// Returns how far each value is off if the profile lies otherwise: by what instruments and flange backs are off, and as the fit on
-    /// the nominal or on a rival has it; and by the noise of the points.
-    fn if_off(&self, curve: &MarkedCurve, options: &MeasureOptions, values: Values) -> Values {
+    /// the nominal or on rivals has it; and by the noise of the points.
+    fn if_off(&self, curve: &MarkedCurve, options: &MeasureOptions, values: ValueRow) -> ValueRow {
         let mut most = values.map(|value| value.map(|_| 0.0f64));
-        let mut at_most = |moved: Values, gone: bool| {
+        let mut at_most = |moved: ValueRow, gone: bool| {
             for ((most, value), moved) in most.iter_mut().zip(values).zip(moved) {
                 let change = moved.zip(value).map(|(moved, value)| (moved - value).abs());
                 // A quantity that is gone after the motion has no bound.
@@ -206,7 +212,7 @@ impl AlignedProfile<'_> {
         if let (Some(on), Ok(_)) = (fit, &self.own) {
             at_most(own_values(on, self.side, &on.curve, options).values(), false);
         }
-        if let Some(by_rival) = self.by_rival(curve, options) {
+        for by_rival in self.by_rivals(curve, options) {
             at_most(by_rival, false);
         }
         let noise = self.noise(curve, options, values);
@@ -221,7 +227,7 @@ impl AlignedProfile<'_> {
         &self,
         curve: &MarkedCurve,
         options: &MeasureOptions,
-        values: Values,
+        values: ValueRow,
     ) -> [f64; Quantity::ALL.len()] {
         let (mut squares, mut counts) = ([0.0; Quantity::ALL.len()], [0u32; Quantity::ALL.len()]);
         for number in 0..SAMPLES {
@@ -230,7 +236,7 @@ impl AlignedProfile<'_> {
             let on_nominal =
                 self.on_nominal.as_ref().map(|(on, nominal)| (on.with(again.placed(&on.frame)), *nominal));
             let sample =
-                AlignedProfile { side: self.side, own, on_nominal, lost: None, rival: None, shown: None };
+                AlignedProfile { side: self.side, own, on_nominal, lost: None, rivals: None, shown: None };
             let found = sample.found(options).values();
             for (k, (value, found)) in values.into_iter().zip(found).enumerate() {
                 if let Some((value, found)) = value.zip(found) {
@@ -244,7 +250,7 @@ impl AlignedProfile<'_> {
 }
 
 /// A number for each quantity that there is.
-type Values = [Option<f64>; Quantity::ALL.len()];
+type ValueRow = [Option<f64>; Quantity::ALL.len()];
 
 /// Measures what needs no nominal.
 fn own_values(on: &Aligned, side: Side, curve: &MarkedCurve, options: &MeasureOptions) -> FoundValues {

@@ -33,7 +33,7 @@ pub(crate) use nominal::flange_back;
 pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
+pub(crate) use quantity::in_micrometres;
 pub use repeats::repeated;
 #[cfg(feature = "files")]
-pub(crate) use rows::in_micrometres;
 pub use rows::{MeasureRow, RowColumns, csv, json, table};

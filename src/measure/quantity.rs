@@ -86,3 +86,8 @@ impl Quantity {
         format!("{}_if_off", self.key())
     }
 }
+
+/// Writes a number with three decimals, 0 without a sign.
+pub(crate) fn in_micrometres(value: f64) -> String {
+    format!("{:.3}", (1e3 * value).round() / 1e3 + 0.0)
+}

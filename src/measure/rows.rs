@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::limits::Limits;
 use super::measures::Measures;
 use super::options::name;
-use super::quantity::Quantity;
+use super::quantity::{Quantity, in_micrometres};
 use crate::error::Result;
 use crate::measured::noise::{Spread, spread_text};
 use crate::profile::Side;
@@ -129,11 +129,6 @@ pub fn json(rows: &[MeasureRow], columns: RowColumns) -> String {
     let list: Vec<Value> = rows.iter().map(|row| row.values(columns).into()).collect();
     // Values without infinities cannot fail to be written.
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
-}
-
-/// Writes a number with three decimals, 0 without a sign.
-pub(crate) fn in_micrometres(value: f64) -> String {
-    format!("{:.3}", (1e3 * value).round() / 1e3 + 0.0)
 }
 
 /// Writes rows as a table of the quantities that any of them has, with alignments, broken limits and findings below it.

@@ -20,8 +20,10 @@ pub(super) fn measure(
 ) -> FoundValues {
     let mut found = FoundValues::default();
     let tread = tread(curve, back, options);
-    let tip = tip(curve, back, options);
-    let face = |over: f64| face(curve, tip.clone()?, tread.clone()? - over, back + options.tread_at);
+    // Faces beside the tip need its place only, which may lie in a gap.
+    let lowest = lowest(curve, back, options);
+    let tip = lowest.clone().and_then(tip);
+    let face = |over: f64| face(curve, lowest.clone()?, tread.clone()? - over, back + options.tread_at);
     let thickness = face(options.flange_level).map(|x| x - back);
     found.put(Quantity::FlangeHeight, tread.clone().and_then(|z| Ok(z - tip.clone()?.z)));
     found
@@ -31,7 +33,7 @@ pub(super) fn measure(
     found.put(
         Quantity::FlangeWidth,
         face(options.width_level)
-            .and_then(|x| Ok(x - behind(curve, tip.clone()?, tread.clone()? - options.width_level)?)),
+            .and_then(|x| Ok(x - behind(curve, lowest.clone()?, tread.clone()? - options.width_level)?)),
     );
     let begin = |tip: &CurvePoint| face(options.flange_level).unwrap_or(tip.x);
     let hollow = tip.clone().and_then(|tip| hollow(curve, tip, begin(&tip), back, options));
@@ -61,8 +63,8 @@ pub(super) fn tread(curve: &MarkedCurve, back: f64, options: &MeasureOptions) ->
     Err(format!("no tread at X = {} mm: the points go from X = {from:.3} to {to:.3}", options.tread_at))
 }
 
-/// Returns the tip of the flange.
-fn tip(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<CurvePoint, String> {
+/// Returns the lowest place, that of the flange's tip.
+fn lowest(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<CurvePoint, String> {
     let tip = curve.highest(-1.0).ok_or("no points")?;
     let x = tip.x - back;
     if tip.mark == 0 || tip.mark + 1 >= curve.marks.len() {
@@ -72,7 +74,12 @@ fn tip(curve: &MarkedCurve, back: f64, options: &MeasureOptions) -> Result<Curve
         let at = options.tread_at;
         return Err(format!("no flange tip: the points are lowest at X = {x:.3} mm, beyond X = {at}"));
     }
-    tip.known().map_err(|why| format!("no flange tip: {why}"))
+    Ok(tip)
+}
+
+/// Returns the tip of the flange, if it was measured.
+fn tip(lowest: CurvePoint) -> Result<CurvePoint, String> {
+    lowest.known().map_err(|why| format!("no flange tip: {why}"))
 }
 
 /// Returns x of the flange's face at a height \[mm\]: the nearest to the tread.
@@ -134,10 +141,10 @@ fn hollow(
 /// Returns the largest vertical distance \[mm\] of the tread above that of the nominal, over the nominal tread from the flange's face.
 fn most_worn(curve: &MarkedCurve, nominal: &Nominal, options: &MeasureOptions) -> Result<f64, String> {
     let own = &nominal.curve;
-    let tip = tip(own, nominal.back, options)?;
+    let tip = lowest(own, nominal.back, options)?;
     let level = tread(own, nominal.back, options)? - options.flange_level;
     let from = face(own, tip, level, nominal.back + options.tread_at)?;
-    let measured = self::tip(curve, nominal.back, options).map_or(0, |tip| tip.mark);
+    let measured = lowest(curve, nominal.back, options).map_or(0, |tip| tip.mark);
     let surface = curve.from(measured);
     let mut pairs = surface.marks.windows(2).peekable();
     if curve.has_gap([1.0, 0.0], Interval::new(from, own.extent().high)) {

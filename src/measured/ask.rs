@@ -1,6 +1,7 @@
 //! Asks in one message for all that a file leaves open and needs, in the words of a scene; other surfaces turn them into their own.
 
 use super::clean::checks::{self, Finding};
+use super::clean::findings;
 use super::clean::repairs;
 use super::options::{Options, Repair};
 use super::read::points::{Point, Points};
@@ -144,7 +145,7 @@ pub(super) fn needed(points: &[Point], side: Side, options: &Options) -> Needed 
     let checked = |allowed: &[Repair]| {
         let mut mended = points.to_vec();
         repairs::repair(&mut mended, allowed);
-        checks::findings(&mended, side, options.gauge_height())
+        findings::findings(&mended, side, options.gauge_height())
     };
     let findings = checked(&allowed);
     let mut left = findings.clone();

@@ -45,7 +45,7 @@ pub use read::scan::LARGEST_FILE;
 pub use read::slices::{ListedSlice, MOST_SLICES, SliceList, listed_body};
 pub use slice::{CutRecord, SectionOfList, Share};
 pub use unit::Unit;
-pub use words::{Surface, spoken, spoken_error};
+pub use words::{Wording, spoken, spoken_error};
 
 use serde::Serialize;
 
@@ -216,7 +216,7 @@ pub fn section(
         let all =
             |list: fn(&Placed) -> &[Note]| slices.iter().flat_map(|(_, own)| list(own).to_vec()).collect();
         let within = format!("{} with the points of {}", cut.place(), record.points_of);
-        let mut findings = clean::checks::findings(&points, side, options.gauge_height());
+        let mut findings = clean::findings::findings(&points, side, options.gauge_height());
         clean::checks::reject(&findings).map_err(|error| error.within(&within))?;
         let own = |finding: &&Finding| {
             let known = || findings.iter().any(|other| other.place == finding.place);
@@ -327,7 +327,7 @@ fn placed(mut read: Points, side: Side, options: &Options) -> Result<Placed> {
         return Err(error);
     }
     let repairs = clean::repairs::repair(&mut points, &options.repair);
-    let findings = clean::checks::findings(&points, side, options.gauge_height());
+    let findings = clean::findings::findings(&points, side, options.gauge_height());
     ask::reject(&transform.points(&read.at), &findings, side, options)?;
     let gaps = gaps(&read, &points, &findings);
     let elements = read.elements.iter().map(|element| transform.element(element)).collect();

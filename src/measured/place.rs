@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::Format;
 use super::ask::{OpenQuestion, name, wrong_unit};
-use super::clean::checks::{Finding, SAME_POINT, no_order, same};
+use super::clean::checks::{Finding, SAME_POINT, same};
+use super::clean::reversals::no_order;
 use super::clean::runs::Path;
 use super::options::{NamedOrigin, Options, Origin, Repair};
 use super::read::points::{DesignElement, ElementShape, Point, Points};

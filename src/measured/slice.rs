@@ -165,7 +165,7 @@ impl<'a> SectionOfList<'a> {
     }
 
     /// Lays the features of a slice out along its points.
-    fn path(&self, slice: &ListedSlice, mut points: Vec<Point>) -> Result<Path> {
+    fn path(&self, slice: &ListedSlice, mut points: Vec<Point>) -> Result<SlicePath> {
         if self.side == Side::Wheel {
             points.reverse();
         }
@@ -189,12 +189,12 @@ impl<'a> SectionOfList<'a> {
             let expected = format!("ascending arc lengths within the {length:.3} mm of the slice");
             return Err(Error::new(&slice.file, found, expected, "correct the list, or check the unit"));
         }
-        Ok(Path { points, arc, breaks, parts: [from, to] })
+        Ok(SlicePath { points, arc, breaks, parts: [from, to] })
     }
 }
 
 /// A slice as a polygon, from the end at which arc lengths begin.
-struct Path {
+struct SlicePath {
     points: Vec<Point>,
     /// Arc length at each point \[mm\].
     arc: Vec<f64>,
@@ -204,7 +204,7 @@ struct Path {
     parts: [usize; 2],
 }
 
-impl Path {
+impl SlicePath {
     /// Gives the indices of the points between two arc lengths, without points at them.
     fn inside(&self, arc: Interval) -> std::ops::Range<usize> {
         let first = self.arc.partition_point(|&s| s <= arc.low + SAME_POINT);
@@ -236,7 +236,7 @@ impl Path {
 
 /// Interpolates between two slices, part by part. Gives the points, and which slice (0 or 1) most of them come from; `None`
 /// without a common part.
-fn between(a: &Path, b: &Path, share: f64) -> Option<(Vec<Point>, usize)> {
+fn between(a: &SlicePath, b: &SlicePath, share: f64) -> Option<(Vec<Point>, usize)> {
     let (from, to) = (a.parts[0].max(b.parts[0]), a.parts[1].min(b.parts[1]));
     if from >= to {
         return None;

@@ -65,7 +65,7 @@ fn flat(wave: impl Fn(f64) -> f64) -> Vec<Point> {
 }
 
 fn checked(points: &[Point]) -> Vec<(Check, String)> {
-    clean::checks::findings(points, Side::Rail, 14.0)
+    clean::findings::findings(points, Side::Rail, 14.0)
         .into_iter()
         .filter(|f| f.check != Check::MissingSideFace)
         .map(|f| (f.check, f.place))

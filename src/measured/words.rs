@@ -7,7 +7,7 @@ use crate::error::Error;
 
 /// Where the options of a measured file are given, other than in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Surface {
+pub enum Wording {
     /// Options of the command line: `--mirror true`.
     CommandLine,
     /// Keywords of Python: `mirror=True`.
@@ -18,13 +18,13 @@ pub enum Surface {
 ///
 /// # Examples
 /// ```
-/// use wheelrail::measured::{Surface, spoken};
+/// use wheelrail::measured::{Wording, spoken};
 ///
 /// let text = "give `repair = [\"sort\", \"cut-loops\"]` or `flip_z = true`";
-/// assert_eq!(spoken(text, Surface::CommandLine), "give `--repair sort,cut-loops` or `--flip-z true`");
-/// assert_eq!(spoken(text, Surface::Keywords), "give `repair=[\"sort\", \"cut-loops\"]` or `flip_z=True`");
+/// assert_eq!(spoken(text, Wording::CommandLine), "give `--repair sort,cut-loops` or `--flip-z true`");
+/// assert_eq!(spoken(text, Wording::Keywords), "give `repair=[\"sort\", \"cut-loops\"]` or `flip_z=True`");
 /// ```
-pub fn spoken(text: &str, surface: Surface) -> String {
+pub fn spoken(text: &str, surface: Wording) -> String {
     let mut out = String::with_capacity(text.len());
     for (k, part) in text.split('`').enumerate() {
         if k > 0 {
@@ -40,7 +40,7 @@ pub fn spoken(text: &str, surface: Surface) -> String {
 
 /// Says an error in the words of a surface.
 #[must_use]
-pub fn spoken_error(mut error: Error, surface: Surface) -> Error {
+pub fn spoken_error(mut error: Error, surface: Wording) -> Error {
     for text in [&mut error.found, &mut error.expected, &mut error.advice] {
         *text = spoken(text, surface);
     }
@@ -48,15 +48,15 @@ pub fn spoken_error(mut error: Error, surface: Surface) -> Error {
 }
 
 /// Says an option, or an option with a value; `None` for other text.
-fn option(text: &str, surface: Surface) -> Option<String> {
+fn option(text: &str, surface: Wording) -> Option<String> {
     let (key, value) = text.split_once(" = ").map_or((text, None), |(key, value)| (key, Some(value)));
     Options::KEYS.contains(&key).then(|| match surface {
-        Surface::CommandLine => {
+        Wording::CommandLine => {
             let bare = |value: &str| value.trim_matches(['[', ']']).replace('"', "").replace(", ", ",");
             let value = value.map_or_else(String::new, |value| format!(" {}", bare(value)));
             format!("--{}{value}", key.replace('_', "-"))
         }
-        Surface::Keywords => {
+        Wording::Keywords => {
             let capital = |value: &str| match value {
                 "true" => "True".to_owned(),
                 "false" => "False".to_owned(),

@@ -76,7 +76,7 @@ struct Wanted {
 }
 
 /// The edges that a component's boundary wants, before they are shortened.
-pub(super) struct Spacing<'r> {
+pub(super) struct RingSpacing<'r> {
     rings: &'r [Ring],
     limits: EdgeLimits,
     corners: Vec<Vec<RingCorner>>,
@@ -86,7 +86,7 @@ pub(super) struct Spacing<'r> {
     lengths: Vec<Vec<f64>>,
 }
 
-impl<'r> Spacing<'r> {
+impl<'r> RingSpacing<'r> {
     /// Finds the edges of a boundary. Cost: a millisecond; it grows with the square of the number of samples.
     pub(super) fn new(tracer: &mut BoundaryTracer<'_>, rings: &'r [Ring], limits: EdgeLimits) -> Self {
         let corners: Vec<Vec<RingCorner>> = rings.iter().map(corners_of).collect();

@@ -12,7 +12,7 @@ use nalgebra::{Point2, Point3};
 use super::boundary::{BoundaryTracer, Ring};
 use super::delaunay::{self, MeshRegion};
 use super::smoothing::{angles, smooth};
-use super::spacing::{self, BoundaryNode, EdgeLimits, Spacing};
+use super::spacing::{self, BoundaryNode, EdgeLimits, RingSpacing};
 use crate::error::{Error, ErrorKind, Result, finite};
 use crate::patch::{Component, Patch};
 use crate::placement::Placement;
@@ -236,7 +236,7 @@ fn best(
 ) -> Result<(MeshRegion, Vec<Vec<BoundaryNode>>)> {
     let mut best: Option<(f64, MeshRegion, Vec<Vec<BoundaryNode>>)> = None;
     let mut made = 0;
-    let wanted = Spacing::new(tracer, rings, EdgeLimits { size, chord_error: CHORD_SHARE * size });
+    let wanted = RingSpacing::new(tracer, rings, EdgeLimits { size, chord_error: CHORD_SHARE * size });
     for attempt in 0..ATTEMPTS {
         let mut chains = wanted.nodes(tracer, SHORTER.powi(attempt))?;
         let region = meshed(tracer, rings, &mut chains, area, size, &mut made)?;

@@ -9,7 +9,7 @@ use super::profiles::{Given, Resolved, rail_of};
 use super::resolve::{echo, with_profiles};
 use super::setup::{position, rails, wheels, within};
 use super::varying::{WheelBody, both_vary, list_of, loft, wheel};
-use crate::case::{Case, MarchCase, Profiles, SideLandmarks, SideProfiles, usual};
+use crate::case::{Case, MarchCase, Profiles, SideProfiles, usual};
 use crate::error::{Error, Result, finite};
 use crate::lofted::{Loft, LoftedBody, LoftedWheel, section};
 use crate::numerics::bodies::Bodies;
@@ -60,7 +60,7 @@ pub fn march(scene: &Scene, folder: &Path) -> Result<MarchCase> {
     let selection = Selection { within, apart: ONE_CONTACT };
     let march = March { system, position, selection, reach, pitch };
     let loaded = loaded(scene, &profiles)?;
-    let landmarks = SideLandmarks::of(&profiles);
+    let landmarks = profiles.landmarks();
     Ok(MarchCase { march, profiles, loaded, landmarks, warnings: lists.warnings, echo: echo(scene, "march") })
 }
 

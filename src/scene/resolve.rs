@@ -14,7 +14,6 @@ use super::side_data::SideData;
 use super::sides::profiles;
 use crate::case::{
     ApproachBy, AskedPressure, Case, Echo, FrameOrigin, Friction, OutputFormat, Outputs, Profiles, Question,
-    SideLandmarks,
 };
 use crate::conformal::Reference;
 use crate::error::{Error, Result, finite};
@@ -76,7 +75,7 @@ fn case(scene: &Scene, name: &str, profiles: impl FnOnce() -> Result<Profiles>) 
     if let Some(side) = profiles.varying().next() {
         asked_of_varying(LoftedBody::name(side), &question)?;
     }
-    let landmarks = SideLandmarks::of(&profiles);
+    let landmarks = profiles.landmarks();
     let (outputs, echo, doubts) = (outputs(scene)?, echo(scene, name), doubts(scene, &profiles, &landmarks));
     Ok(Case { profiles, setup, question, axes, outputs, echo, file: None, landmarks, doubts })
 }

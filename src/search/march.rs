@@ -34,7 +34,7 @@ pub struct March {
 
 /// What a march goes along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Course {
+enum MarchAxis {
     /// The track \[mm\].
     Track,
     /// The pitch of the wheelset \[rad\].
@@ -144,7 +144,7 @@ fn far(a: &Contact, b: &Contact) -> bool {
 #[derive(Clone, Copy)]
 struct Way<'a> {
     march: &'a March,
-    course: Course,
+    course: MarchAxis,
 }
 
 impl March {
@@ -158,7 +158,7 @@ impl March {
     /// Rails of one profile each; places that do not ascend, or where a rail has no slices; a position with values that are not finite,
     /// or angles beyond ±0.5 rad; the errors of `sink`.
     pub fn blocks(&self, along: &[f64], sink: impl FnMut(&[Stop], &[Event]) -> Result<bool>) -> Result<()> {
-        Way { march: self, course: Course::Track }.blocks(along, sink)
+        Way { march: self, course: MarchAxis::Track }.blocks(along, sink)
     }
 
     /// Hands the stops at ascending pitches \[rad\] to `sink`, as [`Self::blocks`] does: the wheelset turns about its axle, and the part
@@ -167,7 +167,7 @@ impl March {
     /// # Errors
     /// Wheels of one profile each, rails that vary; pitches that do not ascend; the other errors of [`Self::blocks`].
     pub fn turns(&self, pitches: &[f64], sink: impl FnMut(&[Stop], &[Event]) -> Result<bool>) -> Result<()> {
-        Way { march: self, course: Course::Pitch }.blocks(pitches, sink)
+        Way { march: self, course: MarchAxis::Pitch }.blocks(pitches, sink)
     }
 
     /// Finds first touch at one place along the track \[mm\].
@@ -175,7 +175,7 @@ impl March {
     /// # Errors
     /// The errors of [`Self::blocks`].
     pub fn at(&self, along: f64) -> Result<Stop> {
-        let way = Way { march: self, course: Course::Track };
+        let way = Way { march: self, course: MarchAxis::Track };
         way.goes()?;
         way.stop(&mut way.begin(), along)
     }
@@ -185,7 +185,7 @@ impl March {
     /// # Errors
     /// The errors of [`Self::turns`].
     pub fn turned(&self, pitch: f64) -> Result<Stop> {
-        let way = Way { march: self, course: Course::Pitch };
+        let way = Way { march: self, course: MarchAxis::Pitch };
         way.goes()?;
         way.stop(&mut way.begin(), pitch)
     }
@@ -262,8 +262,8 @@ impl<'a> Way<'a> {
         self.reaches(along)?;
         let mut rows = Vec::new();
         match self.course {
-            Course::Track => sweep.stand_at(along, self.march.pitch),
-            Course::Pitch => sweep.stand_at(0.0, along),
+            MarchAxis::Track => sweep.stand_at(along, self.march.pitch),
+            MarchAxis::Pitch => sweep.stand_at(0.0, along),
         }
         sweep.position(&self.march.position, &mut rows)?;
         Ok(Stop { along, rows, holes: sweep.over_holes() })
@@ -273,20 +273,20 @@ impl<'a> Way<'a> {
     fn goes(&self) -> Result<()> {
         let along_rails = self.march.reach.low.is_finite();
         match self.course {
-            Course::Track if !along_rails => {
+            MarchAxis::Track if !along_rails => {
                 let expected = "a rail that varies: a list .slcs of slices without `along`";
                 Err(Error::new("rail", "rails of one profile each", expected, "or march over angles"))
             }
-            Course::Pitch if along_rails => {
+            MarchAxis::Pitch if along_rails => {
                 let expected = "rails of one profile each, on which a wheelset turns";
                 Err(Error::new("rail", "rails that vary along the track", expected, "or march along them"))
             }
-            Course::Pitch if !self.march.system.turning() => {
+            MarchAxis::Pitch if !self.march.system.turning() => {
                 let expected =
                     "a wheel that varies: `flat`, `radii`, or a list .slcw of slices without `angle`";
                 Err(Error::new("wheel", "wheels of one profile each", expected, "or march along the track"))
             }
-            Course::Pitch if self.march.pitch != 0.0 => {
+            MarchAxis::Pitch if self.march.pitch != 0.0 => {
                 let found = format!("{} rad", self.march.pitch);
                 let expected = "no pitch of a march around the axle, which has its own";
                 Err(Error::new("wheelset: pitch", found, expected, "remove it"))
@@ -303,8 +303,10 @@ impl<'a> Way<'a> {
         }
         let (name, unit) = self.course.name();
         let expected = match self.course {
-            Course::Track => format!("a place from {} to {} mm, where all slices are", reach.low, reach.high),
-            Course::Pitch => "an angle".into(),
+            MarchAxis::Track => {
+                format!("a place from {} to {} mm, where all slices are", reach.low, reach.high)
+            }
+            MarchAxis::Pitch => "an angle".into(),
         };
         Err(Error::new(name, format!("{at} {unit}"), expected, "march where the lists reach"))
     }
@@ -316,8 +318,8 @@ impl<'a> Way<'a> {
             return Ok(());
         }
         let refined = match self.course {
-            Course::Track => REFINED,
-            Course::Pitch => REFINED / self.march.system.reference_radius(),
+            MarchAxis::Track => REFINED,
+            MarchAxis::Pitch => REFINED / self.march.system.reference_radius(),
         };
         let middle = 0.5 * (a.along + b.along);
         if b.along - a.along <= refined || middle <= a.along || middle >= b.along {
@@ -387,8 +389,8 @@ impl<'a> Way<'a> {
         gap: Option<f64>,
     ) -> Event {
         let slope = |contact: Contact| match self.course {
-            Course::Track => contact.slope_along(),
-            Course::Pitch => {
+            MarchAxis::Track => contact.slope_along(),
+            MarchAxis::Pitch => {
                 let yaw = if side == TrackSide::Right { 1.0 } else { -1.0 } * self.march.position.yaw;
                 slope_of_turning(&contact, yaw)
             }
@@ -405,7 +407,7 @@ fn slope_of_turning(contact: &Contact, yaw: f64) -> f64 {
     0.0 - (contact.y - round) / contact.rolling_radius
 }
 
-impl Course {
+impl MarchAxis {
     /// Gives name and unit of its places.
     fn name(self) -> (&'static str, &'static str) {
         match self {

@@ -78,8 +78,9 @@ fn random_list(random: &mut Random) -> RandomList {
             measured_along: None,
         });
         if let Some((last, was_cut)) = before.filter(|(_, was_cut)| cut || *was_cut) {
+            // A slice between two holes has no surface either: it has no neighbour.
             match holes.last_mut() {
-                Some(Interval { high, .. }) if was_cut => *high = at,
+                Some(Interval { high, .. }) if *high == last => *high = at,
                 _ => holes.push(Interval::new(last, at)),
             }
         }

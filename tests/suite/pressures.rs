@@ -27,6 +27,9 @@ fn near(found: f64, expected: f64, bound: f64) {
     assert!((found / expected - 1.0).abs() <= bound, "{found} is not {expected}");
 }
 
+/// Parts of a cell along each axis over which its mean is taken.
+const PARTS: i32 = 9;
+
 /// The bounds are those of the documentation, over the automatic grid.
 #[test]
 fn pressures_over_the_grid_are_those_of_hertz() -> Result<()> {
@@ -45,8 +48,13 @@ fn pressures_over_the_grid_are_those_of_hertz() -> Result<()> {
         |[xi, eta]: [f64; 2]| (xi / hertz.a_mm.min(hertz.b_mm)).hypot(eta / hertz.a_mm.max(hertz.b_mm));
     let field = found.field.as_ref().expect("a field");
     let points = site.grid.xi.iter().flat_map(|xi| site.grid.eta.iter().map(move |eta| [*xi, *eta]));
+    // Values are means over cells.
+    let [wide, long] = [&site.grid.xi, &site.grid.eta].map(|axis| axis[1] - axis[0]);
+    let share = |k: i32| f64::from(k - PARTS / 2) / f64::from(PARTS);
+    let parts = || (0..PARTS).flat_map(|i| (0..PARTS).map(move |j| [share(i) * wide, share(j) * long]));
     for (at, p) in points.zip(field).filter(|(at, _)| (place(*at) - 1.0).abs() > 0.1) {
-        let exact = hertz.pressure_n_per_mm2 * (1.0 - place(at).powi(2)).max(0.0).sqrt();
+        let shape = |[xi, eta]: [f64; 2]| (1.0 - place([at[0] + xi, at[1] + eta]).powi(2)).max(0.0).sqrt();
+        let exact = hertz.pressure_n_per_mm2 * parts().map(shape).sum::<f64>() / f64::from(PARTS * PARTS);
         assert!((p - exact).abs() < 0.01 * hertz.pressure_n_per_mm2, "{at:?}: {p} is not {exact}");
     }
     for at in found.outline.iter().flatten() {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use wheelrail::case::{Arrangement, DoubtKind, Run, SILENT, SideLandmarks};
+use wheelrail::case::{Arrangement, DoubtKind, Run, SILENT};
 use wheelrail::error::Result;
 use wheelrail::internal::Random;
 use wheelrail::measured::{CurveKind, Options, profile};
@@ -127,7 +127,7 @@ fn sweeps_doubt_contacts_at_an_end() -> Result<()> {
     let case = scene::resolve(&scene::parse(text, false)?, &folder, "end")?;
     let Arrangement::Wheelset { system, .. } = &case.setup().arrangement else { panic!("a wheelset") };
     let mut sweep = Sweep::new(system, Selection { within: 1.0, apart: ONE_CONTACT }, None);
-    let (marks, mut told) = (SideLandmarks::of(case.profiles()), 0);
+    let (marks, mut told) = (case.profiles().landmarks(), 0);
     for lateral in [-3.0, 0.0, 3.0] {
         let mut rows = Vec::new();
         sweep.position(&Position { lateral, yaw: 0.0, roll: Roll::Neglect }, &mut rows)?;

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use wheelrail::case::Doubt;
-use wheelrail::measured::{self, Finding, Surface};
+use wheelrail::measured::{self, Finding, Wording};
 use wheelrail::{Error, ErrorKind};
 
 /// Texts of scenes and of the command line, each with the text that messages in Python have instead.
@@ -48,7 +48,7 @@ impl<T> OrRaise<T> for wheelrail::Result<T> {
 fn spoken(text: &str) -> String {
     WORDS
         .iter()
-        .fold(measured::spoken(text, Surface::Keywords), |text, (theirs, ours)| text.replace(theirs, ours))
+        .fold(measured::spoken(text, Wording::Keywords), |text, (theirs, ours)| text.replace(theirs, ours))
 }
 
 /// Names the argument that a key of a scene stands for. A place in a scene begins with the scene, and stays.

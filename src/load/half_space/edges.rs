@@ -31,7 +31,7 @@ const GROWTH: f64 = 0.5 / (PI * PI);
 
 /// An edge in the contact, along ξ or η, at which the surfaces press into each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
+pub struct SharpEdge {
     /// ξ and η \[mm\].
     pub at_mm: [f64; 2],
     /// Change of the slope of s along the line across it \[1\], > 0; infinite where a surface ends.
@@ -50,44 +50,50 @@ struct OnLine {
     rise: f64,
 }
 
-impl Pressures {
-    /// Finds the edge in the contact whose pressure passes all others on fine cells: there is then no largest pressure. `None` where the
-    /// largest pressure has a bound.
-    ///
-    /// Method: on a line across an edge at which the slope of s rises by Δ, p grows by E* Δ/2π wherever cells are e times smaller, since
-    /// that of a plane wedge is E* Δ/2π ln(1/ξ). Where the slope rises, the line is halved until the rest is 1e-6 mm wide. Where a surface
-    /// ends beside cells whose pressures rise towards it, p grows with the root, as under a punch.
-    /// Cost: 1000 values of s. An edge that meets none of five lines across the contact along either axis is missed.
-    pub fn unbounded(&self, placement: &Placement) -> Option<Edge> {
-        let mut evaluator = Evaluator::new(placement);
-        let most = self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
-        let mut worst: Option<(f64, Edge)> = None;
-        for axis in [0, 1] {
-            for line in self.lines(axis, most) {
-                let across = self.cells.middle(1 - axis, line as f64);
-                let point = |t: f64| if axis == 0 { [t, across] } else { [across, t] };
-                let mut gap = |t: f64| {
-                    let [xi, eta] = point(t);
-                    let (s, gradient) = evaluator.separation_and_gradient(xi, eta);
-                    [s, gradient[axis]]
-                };
-                let found = self.kinks(axis, line, most, &mut gap).into_iter();
-                for OnLine { t, kink, reached, rise } in found.chain(self.steps(axis, line, &mut gap)) {
-                    let passes = reached > worst.map_or((1.0 + RISE) * most, |(passed, _)| passed);
-                    if passes {
-                        worst =
-                            Some((reached, Edge { at_mm: point(t), kink, rise_n_per_mm2: rise * self.unit }));
-                    }
+/// Finds the edge in the contact whose pressure passes all others on fine cells: there is then no largest pressure. `None` where the
+/// largest pressure has a bound.
+///
+/// Method: on a line across an edge at which the slope of s rises by Δ, p grows by E* Δ/2π wherever cells are e times smaller, since
+/// that of a plane wedge is E* Δ/2π ln(1/ξ). Where the slope rises, the line is halved until the rest is 1e-6 mm wide. Where a surface
+/// ends beside cells whose pressures rise towards it, p grows with the root, as under a punch.
+/// Cost: 1000 values of s. An edge that meets none of five lines across the contact along either axis is missed.
+pub fn sharp_edge(pressures: &Pressures, placement: &Placement) -> Option<SharpEdge> {
+    let on = OnLines(pressures);
+    let mut evaluator = Evaluator::new(placement);
+    let most = pressures.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
+    let mut worst: Option<(f64, SharpEdge)> = None;
+    for axis in [0, 1] {
+        for line in on.lines(axis, most) {
+            let across = pressures.cells.middle(1 - axis, line as f64);
+            let point = |t: f64| if axis == 0 { [t, across] } else { [across, t] };
+            let mut gap = |t: f64| {
+                let [xi, eta] = point(t);
+                let (s, gradient) = evaluator.separation_and_gradient(xi, eta);
+                [s, gradient[axis]]
+            };
+            let found = on.kinks(axis, line, most, &mut gap).into_iter();
+            for OnLine { t, kink, reached, rise } in found.chain(on.steps(axis, line, &mut gap)) {
+                let passes = reached > worst.map_or((1.0 + RISE) * most, |(passed, _)| passed);
+                if passes {
+                    worst = Some((
+                        reached,
+                        SharpEdge { at_mm: point(t), kink, rise_n_per_mm2: rise * pressures.unit },
+                    ));
                 }
             }
         }
-        worst.map(|(_, edge)| edge)
     }
+    worst.map(|(_, edge)| edge)
+}
 
+/// Pressures as lines of cells along either axis.
+struct OnLines<'p>(&'p Pressures);
+
+impl OnLines<'_> {
     /// Gives p/(π E*) \[1\] of a cell of a line along an axis; 0 beyond the cells.
     fn on_line(&self, axis: usize, line: usize, cell: usize) -> f64 {
         let [i, j] = if axis == 0 { [cell, line] } else { [line, cell] };
-        if cell < self.cells.count[axis] { self.relative[i * self.cells.count[1] + j] } else { 0.0 }
+        if cell < self.0.cells.count[axis] { self.0.relative[i * self.0.cells.count[1] + j] } else { 0.0 }
     }
 
     /// Lists the kinks on a line of cells that pass the largest pressure, `most`; `gap` gives s and its slope.
@@ -100,8 +106,8 @@ impl Pressures {
     ) -> Vec<OnLine> {
         let Some([first, last]) = self.pressed(axis, line) else { return Vec::new() };
         let range =
-            Interval::new(self.cells.middle(axis, first as f64), self.cells.middle(axis, last as f64));
-        let cell = |t: f64| ((t - self.cells.from[axis]) / self.cells.step[axis]) as usize;
+            Interval::new(self.0.cells.middle(axis, first as f64), self.0.cells.middle(axis, last as f64));
+        let cell = |t: f64| ((t - self.0.cells.from[axis]) / self.0.cells.step[axis]) as usize;
         let at = |k: usize| range.low + range.width() * k as f64 / PARTS as f64;
         let (mut out, [_, mut from]) = (Vec::new(), gap(range.low));
         for k in 0..PARTS {
@@ -124,10 +130,10 @@ impl Pressures {
     fn steps(&self, axis: usize, line: usize, gap: &mut impl FnMut(f64) -> [f64; 2]) -> Vec<OnLine> {
         let Some([first, last]) = self.pressed(axis, line) else { return Vec::new() };
         let (step, ends) =
-            (self.cells.step[axis], [(first, first + 1, -1.0), (last, last.wrapping_sub(1), 1.0)]);
+            (self.0.cells.step[axis], [(first, first + 1, -1.0), (last, last.wrapping_sub(1), 1.0)]);
         let found = ends.into_iter().filter_map(|(end, before, outwards)| {
             let pressure = self.on_line(axis, line, end);
-            let t = self.cells.middle(axis, end as f64);
+            let t = self.0.cells.middle(axis, end as f64);
             let t = (pressure > self.on_line(axis, line, before))
                 .then(|| surface_end(gap, [t, t + outwards * step]))??;
             let root = |finer: f64| pressure * finer.sqrt();
@@ -138,18 +144,18 @@ impl Pressures {
 
     /// Lists the lines of cells along an axis on which edges are looked for: that of the largest pressure, and some spread over the contact.
     fn lines(&self, axis: usize, most: f64) -> Vec<usize> {
-        let [columns, rows] = self.cells.count;
+        let [columns, rows] = self.0.cells.count;
         let number = |cell: usize| if axis == 0 { cell % rows } else { cell / rows };
-        let pressed = || (0..columns * rows).filter(|&cell| self.relative[cell] > 0.0).map(number);
+        let pressed = || (0..columns * rows).filter(|&cell| self.0.relative[cell] > 0.0).map(number);
         let (Some(first), Some(last)) = (pressed().min(), pressed().max()) else { return Vec::new() };
-        let largest = self.relative.iter().position(|p| *p == most).map(number);
+        let largest = self.0.relative.iter().position(|p| *p == most).map(number);
         let spread = (1..LINES).map(|k| first + (last - first) * k / LINES);
         largest.into_iter().chain(spread).collect()
     }
 
     /// Gives the first and the last cell of a line that is pressed; `None` of fewer than two.
     fn pressed(&self, axis: usize, line: usize) -> Option<[usize; 2]> {
-        let mut on = (0..self.cells.count[axis]).filter(|&k| self.on_line(axis, line, k) > 0.0);
+        let mut on = (0..self.0.cells.count[axis]).filter(|&k| self.on_line(axis, line, k) > 0.0);
         let first = on.next()?;
         Some([first, on.next_back()?])
     }

@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::patch::Window;
 use crate::placement::Placement;
 pub use cells::Cells;
-pub use edges::Edge;
+pub use edges::{SharpEdge, sharp_edge};
 use influence::Influence;
 pub use pressures::{Largest, Pressures};
 use settle::System;

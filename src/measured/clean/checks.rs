@@ -1,26 +1,13 @@
-//! Checks measured points in profile axes, from left to right. Each finding names its place in the file.
+//! The kinds of faults of measured points. Each finding names its place in the file.
 
 use serde::Serialize;
 
-use super::course::Course;
-use super::loops;
-use super::order::{folds, reversals};
-use super::runs::Path;
 use crate::error::{Error, Result};
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
-use crate::measured::shape::{gauge_depth, has_flange_back};
-use crate::profile::Side;
 
 /// Distance \[mm\] below which two points are one: a nanometre is less than any instrument or file resolves.
 pub(in crate::measured) const SAME_POINT: f64 = 1e-6;
-/// Least length of a gap, as a multiple of the median distance of neighbours. A gap is also at least [`GAP`] long.
-const GAP_RATIO: f64 = 10.0;
-/// Least length of a gap \[mm\]: the length of a contact patch.
-const GAP: f64 = 5.0;
-/// Least share of the points at which the path of points in no order turns back; a shuffled path does at every second one.
-const NO_ORDER: f64 = 0.1;
-
 /// A kind of fault of measured points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -121,61 +108,6 @@ impl Finding {
     }
 }
 
-/// Returns whether the smoothed path turns back all along.
-pub(super) fn is_disordered(course: &Course) -> bool {
-    reversals(&course.at).len() as f64 >= NO_ORDER * course.at.len() as f64
-}
-
-/// Returns the error of points in no order at all, whose shape says nothing.
-pub(in crate::measured) fn no_order(points: &[Point]) -> Option<Error> {
-    if !is_disordered(&Course::new(points)) {
-        return None;
-    }
-    let back = reversals(points);
-    let first = points.get(*back.first()?)?;
-    let (count, n) = (back.len(), points.len());
-    (count > 2).then(|| {
-        let found = format!("points in no order: the path turns back at {count} of {n} points");
-        let expected = "points in order along the profile, from one end to the other";
-        Error::new(first.place(), found, expected, "sort the rows of the file")
-    })
-}
-
-/// Finds all faults, in the order of [`Check`].
-pub fn findings(points: &[Point], side: Side, gauge_height: f64) -> Vec<Finding> {
-    let path = Path::of(points);
-    let sound = &path.sound;
-    let mut out = Vec::new();
-    let found = |k: usize| format!("the same place as {}", sound[k - 1].place());
-    out.extend(duplicates(sound).map(|k| Finding::new(Check::Duplicate, &sound[k], found(k))));
-    out.extend(folds(&path).iter().map(|fold| fold.finding(points)));
-    out.extend(path.runs.iter().map(|run| run.finding(points)));
-    // A path that runs back crosses itself everywhere: beside a fatal finding, crossings are not sought.
-    if !out.iter().any(|finding| finding.fatal) {
-        out.extend(crossings(&path.course.at));
-    }
-    out.extend(gaps(sound).into_iter().map(|(k, step)| {
-        let found = format!("no point over {step:.2} mm up to {}", sound[k + 1].place());
-        Finding::new(Check::Gap, &sound[k], found)
-    }));
-    out.extend(missing_side_face(&path.course.at, side, gauge_height));
-    out
-}
-
-fn crossings(points: &[Point]) -> Vec<Finding> {
-    let found = loops::crossings(points);
-    let crossing = |[a, b]: &[usize; 2]| {
-        let found = format!("a loop: the curve crosses itself before {}", points[b + 1].place());
-        Finding::new(Check::Loop, &points[*a], found)
-    };
-    let mut out: Vec<Finding> = found.edges.iter().map(crossing).collect();
-    if let (Some(first), true) = (points.first(), found.cut_short) {
-        let text = "too tangled a path to be searched for loops to its end: there may be some";
-        out.push(Finding { fatal: false, ..Finding::new(Check::Loop, first, text) });
-    }
-    out
-}
-
 /// Rejects points with a fatal finding. The error names the first one and counts the others.
 ///
 /// # Errors
@@ -210,27 +142,4 @@ pub(in crate::measured) fn distance(a: &Point, b: &Point) -> f64 {
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::INFINITY)
-}
-
-/// Returns the indices of points after which a long stretch has no points, and its lengths \[mm\].
-fn gaps(points: &[Point]) -> Vec<(usize, f64)> {
-    let steps: Vec<f64> = points.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
-    let least = GAP.max(GAP_RATIO * median(steps.clone()));
-    steps.into_iter().enumerate().filter(|(_, step)| *step > least).collect()
-}
-
-fn missing_side_face(points: &[Point], side: Side, gauge_height: f64) -> Option<Finding> {
-    let first = points.first()?;
-    let found = match side {
-        Side::Wheel if has_flange_back(points) => return None,
-        Side::Wheel => "no back of the flange".to_owned(),
-        Side::Rail => {
-            let depth = gauge_depth(points);
-            if depth >= gauge_height {
-                return None;
-            }
-            format!("a gauge face measured down to {depth:.1} of {gauge_height} mm below the top")
-        }
-    };
-    Some(Finding::new(Check::MissingSideFace, first, found))
 }

@@ -58,8 +58,8 @@ impl Course {
     fn merge(&mut self, points: &[Point]) -> bool {
         let pairs = rough_pairs(&self.at);
         let smoothed = |k: usize| self.merged[k + 1] && self.merged[k + 2];
-        let noise = Tally::of(pairs.iter().copied());
-        let left = Tally::of(pairs.iter().enumerate().map(|(k, &rough)| rough && smoothed(k)));
+        let noise = RoughTally::of(pairs.iter().copied());
+        let left = RoughTally::of(pairs.iter().enumerate().map(|(k, &rough)| rough && smoothed(k)));
         let is_noisy = |k: usize| if self.merged[k] { left.near(k) >= LEFT } else { noise.near(k) >= NOISE };
         let mut noisy: Vec<bool> = (0..self.at.len()).map(is_noisy).collect();
         steps_back(&self.at).for_each(|range| noisy[range].fill(true));
@@ -82,9 +82,9 @@ impl Course {
 }
 
 /// The number of rough pairs up to each one.
-struct Tally(Vec<usize>);
+struct RoughTally(Vec<usize>);
 
-impl Tally {
+impl RoughTally {
     fn of(rough: impl Iterator<Item = bool>) -> Self {
         let mut sum = vec![0];
         rough.for_each(|rough| sum.push(sum[sum.len() - 1] + usize::from(rough)));

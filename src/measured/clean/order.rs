@@ -1,17 +1,10 @@
 //! Finds where the smoothed path of measured points runs back.
 
 use super::checks::{Check, Finding, distance};
-use super::course::{Course, turn};
+use super::course::Course;
+use super::reversals::reversals;
 use super::runs::Path;
 use crate::measured::read::points::Point;
-
-/// Turn \[rad\] at a vertex beyond which the path runs back, 120°: sharp edges of profiles turn by less than 100°, points in the wrong
-/// order by about 180°.
-pub(super) const BACKWARDS: f64 = 2.0 / 3.0 * std::f64::consts::PI;
-/// Least angle \[rad\] between the sides of a notch or of a thin blade, 4°. Narrower ones are a path that runs back over itself.
-const NARROWEST: f64 = 0.07;
-/// Fewest vertices on each side of a notch: fewer are points that were added at an end.
-const SIDE: usize = 2;
 
 /// The stretch of points `from`..=`to` between two reversals of the path. A single reversal has `from == to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,19 +107,4 @@ fn paired(back: &[usize], n: usize) -> Vec<Fold> {
             [pairs(&back[..single]), vec![alone(back[single])], pairs(&back[single + 1..])].concat()
         }
     }
-}
-
-/// Returns the vertices where the path runs back: it turns by more than 120° there, and neither goes on to larger x on both sides, as a
-/// notch between blade and stock rail does, nor ends within a vertex.
-pub(super) fn reversals(at: &[Point]) -> Vec<usize> {
-    let (Some(first), Some(last)) = (at.first(), at.last()) else { return Vec::new() };
-    let way = (last.x - first.x).signum();
-    let back = |k: &usize| {
-        let [a, b, c] = [&at[*k - 1], &at[*k], &at[*k + 1]];
-        let turned = turn(a, b, c).abs();
-        let onwards =
-            way * (b.x - a.x) > 0.0 && way * (c.x - b.x) > 0.0 && turned < std::f64::consts::PI - NARROWEST;
-        turned > BACKWARDS && !(onwards && *k >= SIDE && *k + SIDE < at.len())
-    };
-    (1..at.len().saturating_sub(1)).filter(back).collect()
 }

@@ -80,8 +80,11 @@ fn sort(points: &mut [Point]) -> Vec<Point> {
         let range = first_points.partition_point(|&k| k < sorted_to)
             ..first_points.partition_point(|&k| k <= fold.from);
         if fold.from >= sorted_to && range.len() > 1 {
-            let track =
-                Track { at: &vertices[range.clone()], length: &length[range.clone()], near: range.len() - 1 };
+            let track = PathWalk {
+                at: &vertices[range.clone()],
+                length: &length[range.clone()],
+                near: range.len() - 1,
+            };
             sorted_to = sort_fold(points, fold, sorted_to, track, &mut moved);
         }
     }
@@ -94,7 +97,7 @@ fn sort_fold(
     points: &mut [Point],
     fold: Fold,
     sorted_to: usize,
-    mut track: Track<'_>,
+    mut track: PathWalk<'_>,
     moved: &mut Vec<Point>,
 ) -> usize {
     let mut along: Vec<f64> = Vec::new();
@@ -131,7 +134,7 @@ fn sort_fold(
 }
 
 /// The smoothed path that leads to a fold, of two vertices or more, with a place on it that is walked from point to point.
-struct Track<'a> {
+struct PathWalk<'a> {
     at: &'a [Point],
     /// Length of the path up to each vertex \[mm\].
     length: &'a [f64],
@@ -139,7 +142,7 @@ struct Track<'a> {
     near: usize,
 }
 
-impl Track<'_> {
+impl PathWalk<'_> {
     /// Number of vertices ahead of the place that are looked at: noise may make the next one no nearer.
     const AHEAD: usize = 8;
 

@@ -4,9 +4,9 @@
 //! side, each off to its own side. An edge is no step, because its point lies on both lines; nor is an arc, because it turns one
 //! way. Without the run there is no step.
 
-use super::checks::{Check, Finding, distance, is_disordered, median};
+use super::checks::{Check, Finding, distance, median};
 use super::course::{Course, turn};
-use super::order::BACKWARDS;
+use super::reversals::{BACKWARDS, is_disordered};
 use crate::measured::read::points::Point;
 
 /// Least height of a step, as a multiple of the median noise of the steps nearby, and of all: nine deviations of a point.
@@ -23,6 +23,8 @@ const LEVEL: usize = 3;
 const NEIGHBOURHOOD: usize = 10;
 /// Largest number of vertices of a run: the larger of this number and a fortieth of those of the smoothed path.
 const LONGEST: usize = 12;
+/// Least number of vertices of the path to one of a run: what most of the points say is the curve.
+const FEW: usize = 4;
 /// Least distance of a point from the smoothed path where it is off it, as a multiple of that within which three in four are: nine
 /// deviations.
 const POINT_RATIO: f64 = 8.0;
@@ -48,7 +50,7 @@ const ROUNDS: usize = 5;
 
 /// The points `from`..=`to`, which lie off the curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::measured) struct Run {
+pub(in crate::measured) struct BadRun {
     pub from: usize,
     pub to: usize,
     /// Largest distance of its points from the curve \[mm\].
@@ -59,7 +61,7 @@ pub(in crate::measured) struct Run {
 #[derive(Debug, Clone)]
 pub(in crate::measured) struct Path {
     /// The runs off the curve, from left to right.
-    pub runs: Vec<Run>,
+    pub runs: Vec<BadRun>,
     /// Indices of the other points.
     pub on: Vec<usize>,
     /// The other points.
@@ -95,7 +97,7 @@ impl Path {
     }
 }
 
-impl Run {
+impl BadRun {
     pub(super) fn finding(&self, points: &[Point]) -> Finding {
         let (first, last) = (&points[self.from], &points[self.to]);
         let found = match self.to - self.from {
@@ -119,11 +121,13 @@ impl Run {
     }
 
     /// Returns whether no surface has such a run: the path turns back at it, it is higher than any dent, or all its heights are the same,
-    /// as a scanner writes where it sees nothing. Other runs may be dirt, or dents.
+    /// as a scanner writes where it sees nothing. Other runs may be dirt, dents, or a corner of a curve with few points.
     fn is_no_surface(&self, points: &[Point]) -> bool {
         let level = points[self.from..=self.to].iter().all(|p| p.z == points[self.from].z);
         let more = self.to > self.from;
-        more && level || self.height >= NO_WEAR || self.is_sharp(points)
+        let beside = self.from.checked_sub(1).and_then(|k| points.get(k)).zip(points.get(self.to + 1));
+        let apart = beside.filter(|_| !more).map_or(0.0, |(before, after)| distance(before, after));
+        more && level || self.height >= NO_WEAR.max(0.5 * apart) || self.is_sharp(points)
     }
 
     /// Returns whether it is a single point, and the path turns by more than 120° at it or beside it.
@@ -135,17 +139,18 @@ impl Run {
 }
 
 /// Finds all runs, from left to right.
-fn runs(points: &[Point]) -> Vec<Run> {
+fn runs(points: &[Point]) -> Vec<BadRun> {
     let mut bad: Vec<Option<f64>> = far_away(points).iter().map(|far| far.then_some(FAR)).collect();
     // Smoothing would mix a run with its neighbours: what sticks out of the path as it is goes first.
     for smoothed in [false, true] {
         let on: Vec<usize> = (0..points.len()).filter(|&k| bad[k].is_none()).collect();
         let sound: Vec<Point> = on.iter().map(|&k| points[k]).collect();
         let course = if smoothed { Course::new(&sound) } else { Course::unsmoothed(&sound) };
+        let vertices = course.at.len();
         let wanted = if smoothed {
-            Wanted { longest: LONGEST.max(course.at.len() / 40), least: 0.0 }
+            WantedRuns { longest: LONGEST.max(vertices / 40).min(vertices / FEW), least: 0.0 }
         } else {
-            Wanted { longest: LONGEST, least: NO_WEAR }
+            WantedRuns { longest: LONGEST.min(vertices / FEW), least: NO_WEAR }
         };
         for (place, far) in off_the_course(&sound, &course, wanted) {
             bad[on[place]] = Some(far);
@@ -155,7 +160,7 @@ fn runs(points: &[Point]) -> Vec<Run> {
 }
 
 /// Returns the points that are off the curve, and their distances \[mm\] from it.
-fn off_the_course(points: &[Point], course: &Course, wanted: Wanted) -> Vec<(usize, f64)> {
+fn off_the_course(points: &[Point], course: &Course, wanted: WantedRuns) -> Vec<(usize, f64)> {
     let mut off = vec![false; course.at.len()];
     let mut kept: Vec<usize> = (0..course.at.len()).collect();
     for _ in 0..ROUNDS {
@@ -178,12 +183,12 @@ fn off_the_course(points: &[Point], course: &Course, wanted: Wanted) -> Vec<(usi
 }
 
 /// Returns the runs of consecutive bad points, of their distances.
-fn gathered(bad: &[Option<f64>]) -> Vec<Run> {
-    let mut out: Vec<Run> = Vec::new();
+fn gathered(bad: &[Option<f64>]) -> Vec<BadRun> {
+    let mut out: Vec<BadRun> = Vec::new();
     for (k, far) in bad.iter().enumerate().filter_map(|(k, far)| Some((k, (*far)?))) {
         match out.last_mut() {
             Some(run) if run.to + 1 == k => (run.to, run.height) = (k, run.height.max(far)),
-            _ => out.push(Run { from: k, to: k, height: far }),
+            _ => out.push(BadRun { from: k, to: k, height: far }),
         }
     }
     out
@@ -230,12 +235,12 @@ fn from_chord(p: &Point, [a, b]: [&Point; 2], open: [bool; 2]) -> f64 {
 
 /// A line through vertices: one of its points, and its direction.
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct Chord {
     at: [f64; 2],
     along: [f64; 2],
 }
 
-impl Line {
+impl Chord {
     /// Returns the line of least squares through vertices, along their order; `None` if they do not tell a direction.
     fn through(points: &[Point]) -> Option<Self> {
         let (first, last) = (points.first()?, points.last()?);
@@ -263,7 +268,7 @@ impl Line {
 
 /// The step from a vertex to the next one, between the line that ends in the first and the line that begins in the second.
 #[derive(Debug, Clone, Copy, Default)]
-struct Step {
+struct StepHeight {
     /// The smaller one of the two vertices' distances \[mm\] from the other's line; 0 if both are on one side: an arc, or an edge.
     least: f64,
     /// The larger one \[mm\].
@@ -272,9 +277,9 @@ struct Step {
     noise: f64,
 }
 
-impl Step {
+impl StepHeight {
     /// At an end of the path there is one line.
-    fn between(before: Option<Line>, a: &Point, b: &Point, after: Option<Line>) -> Self {
+    fn between(before: Option<Chord>, a: &Point, b: &Point, after: Option<Chord>) -> Self {
         match (before.map(|line| line.off(b)), after.map(|line| line.off(a))) {
             (Some(left), Some(right)) => {
                 let [least, most] = [left.abs().min(right.abs()), left.abs().max(right.abs())];
@@ -288,17 +293,17 @@ impl Step {
 }
 
 /// Finds the runs [first, last] of a chain of distinct vertices.
-fn runs_of(chain: &[Point], wanted: Wanted) -> Vec<[usize; 2]> {
+fn runs_of(chain: &[Point], wanted: WantedRuns) -> Vec<[usize; 2]> {
     let n = chain.len();
     if n < SIDE {
         return Vec::new();
     }
-    let line = |from: usize| Line::through(&chain[from..from + 2]);
+    let line = |from: usize| Chord::through(&chain[from..from + 2]);
     let of_edge = |k: usize| {
         let before = k.checked_sub(1).and_then(line);
-        Step::between(before, &chain[k], &chain[k + 1], (k + 2 < n).then(|| line(k + 1)).flatten())
+        StepHeight::between(before, &chain[k], &chain[k + 1], (k + 2 < n).then(|| line(k + 1)).flatten())
     };
-    let heights: Vec<Step> = (0..n - 1).map(of_edge).collect();
+    let heights: Vec<StepHeight> = (0..n - 1).map(of_edge).collect();
     let mut noise: Vec<f64> = heights.iter().map(|step| step.noise).collect();
     noise.sort_by(f64::total_cmp);
     // Of normal noise three in four values are within 1.7 medians; where noise runs along the path it shows in none.
@@ -315,7 +320,7 @@ fn runs_of(chain: &[Point], wanted: Wanted) -> Vec<[usize; 2]> {
             || beyond(lengths[k], JUMP, JUMP_RATIO, &|j| lengths[j])
     };
     let steps: Vec<usize> = (0..n - 1).filter(|&k| is_step(k)).collect();
-    let search = Search { chain, heights: &heights, steps: &steps, wanted };
+    let search = RunSearch { chain, heights: &heights, steps: &steps, wanted };
     let mut pairs: Vec<[usize; 2]> =
         (0..steps.len()).filter_map(|s| Some([s, search.run_from(s)?])).collect();
     pairs.sort_by_key(|&[s, e]| steps[e] - steps[s]);
@@ -333,22 +338,22 @@ fn runs_of(chain: &[Point], wanted: Wanted) -> Vec<[usize; 2]> {
 
 /// The runs that are wanted.
 #[derive(Debug, Clone, Copy)]
-struct Wanted {
+struct WantedRuns {
     /// Largest number of vertices.
     longest: usize,
     /// Least height \[mm\].
     least: f64,
 }
 
-struct Search<'a> {
+struct RunSearch<'a> {
     chain: &'a [Point],
-    heights: &'a [Step],
+    heights: &'a [StepHeight],
     /// Edges k → k + 1 that are steps.
     steps: &'a [usize],
-    wanted: Wanted,
+    wanted: WantedRuns,
 }
 
-impl Search<'_> {
+impl RunSearch<'_> {
     /// Returns the step that ends the shortest run which begins with step `s`.
     fn run_from(&self, s: usize) -> Option<usize> {
         let ends = s + 1..self.steps.len().min(s + 1 + ENDS);
@@ -360,16 +365,16 @@ impl Search<'_> {
         let (a, b) = (self.steps[s], self.steps[e] + 1);
         let from = if s > 0 { self.steps[s - 1] + 1 } else { 0 }.max((a + 1).saturating_sub(SIDE));
         let to = self.steps.get(e + 1).map_or(self.chain.len(), |next| next + 1).min(b + SIDE);
-        let [before, after] = [from..a + 1, b..to].map(|side| Line::through(&self.chain[side]));
+        let [before, after] = [from..a + 1, b..to].map(|side| Chord::through(&self.chain[side]));
         let [p, q] = [&self.chain[a], &self.chain[b]];
-        let onwards = |line: Option<Line>| line.is_none_or(|line| line.is_along(p, q));
+        let onwards = |line: Option<Chord>| line.is_none_or(|line| line.is_along(p, q));
         let ends = [&self.heights[a], &self.heights[b - 1]];
         let least = ends[0].least.min(ends[1].least);
-        let left = Step::between(before, p, q, after).least;
+        let left = StepHeight::between(before, p, q, after).least;
         let gap = distance(p, q);
         let run = &self.chain[a + 1..b];
-        let off = |chord: Line| run.iter().map(|p| chord.off(p).abs()).fold(0.0, f64::max);
-        let height = Line::through(&[*p, *q]).map_or(0.0, off);
+        let off = |chord: Chord| run.iter().map(|p| chord.off(p).abs()).fold(0.0, f64::max);
+        let height = Chord::through(&[*p, *q]).map_or(0.0, off);
         let [lower, higher] = [ends[0].most.min(ends[1].most), ends[0].most.max(ends[1].most)];
         let by_steps =
             least > STEP_HEIGHT && lower >= ABRUPT * height && left <= STEP_HEIGHT.max(LEFT_OVER * higher);

@@ -133,7 +133,7 @@ pub(in crate::measured) fn curve(
     let found = kinks(points, options.kink_angle(), scatter.size);
     let corners: Vec<usize> = found.iter().map(|kink| kink.at).collect();
     let arcs_alone = kind == CurveKind::Arcs;
-    let Drawn { segments, residuals, cutoff, because } = match kind {
+    let DrawnCurve { segments, residuals, cutoff, because } = match kind {
         CurveKind::Arcs => arcs(points, &corners, options)?,
         CurveKind::Interpolation => splined(pieces(points, &corners, None), points, None)?,
         _ => smoothed(points, &corners, options, &scatter)?,
@@ -210,7 +210,7 @@ fn spline_residuals(pieces: &[SplinePiece], points: &[Point]) -> Vec<f64> {
 }
 
 /// A curve as it was drawn.
-struct Drawn {
+struct DrawnCurve {
     segments: Vec<Segment>,
     /// Distance of each point from it \[mm\].
     residuals: Vec<f64>,
@@ -219,13 +219,17 @@ struct Drawn {
     because: Option<&'static str>,
 }
 
-fn splined(pieces: Vec<SplinePiece>, points: &[Point], cutoff: Option<(f64, &'static str)>) -> Result<Drawn> {
+fn splined(
+    pieces: Vec<SplinePiece>,
+    points: &[Point],
+    cutoff: Option<(f64, &'static str)>,
+) -> Result<DrawnCurve> {
     let (cutoff, because) = cutoff.unzip();
     let mut segments = Vec::with_capacity(points.len());
     for piece in &pieces {
         segments.extend(piece.segments(cutoff)?);
     }
-    Ok(Drawn { segments, residuals: spline_residuals(&pieces, points), cutoff, because })
+    Ok(DrawnCurve { segments, residuals: spline_residuals(&pieces, points), cutoff, because })
 }
 
 /// Smooths with the cut-off wavelength that the options give; otherwise with the shortest at which the noise does the curvature no
@@ -233,7 +237,7 @@ fn splined(pieces: Vec<SplinePiece>, points: &[Point], cutoff: Option<(f64, &'st
 ///
 /// What most points are off the curve is noise too, whatever its waves: where it exceeds the noise between neighbours, the wavelength
 /// is at least doubled.
-fn smoothed(points: &[Point], corners: &[usize], options: &Options, scatter: &Scatter) -> Result<Drawn> {
+fn smoothed(points: &[Point], corners: &[usize], options: &Options, scatter: &Scatter) -> Result<DrawnCurve> {
     let fit = |cutoff: f64| pieces(points, corners, Some(cutoff));
     if let Some(cutoff) = options.cutoff_wavelength {
         return splined(fit(cutoff), points, Some((cutoff, "option `cutoff_wavelength`")));
@@ -253,7 +257,7 @@ fn smoothed(points: &[Point], corners: &[usize], options: &Options, scatter: &Sc
 
 /// Fits a chain of arcs to the tangents of a spline. The spline has the smoothing that the options give; otherwise it has
 /// the strongest smoothing that uses no more than half of the tolerance, or none.
-fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<Drawn> {
+fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<DrawnCurve> {
     let tolerance = options.arc_tolerance();
     let fit = |cutoff: Option<f64>| (pieces(points, corners, cutoff), cutoff);
     let near = |(pieces, _): &(Vec<SplinePiece>, Option<f64>)| {
@@ -278,5 +282,5 @@ fn arcs(points: &[Point], corners: &[usize], options: &Options) -> Result<Drawn>
     }
     let given = options.cutoff_wavelength.map(|_| "option `cutoff_wavelength`");
     let because = cutoff.map(|_| given.unwrap_or("the tolerance of the arcs"));
-    Ok(Drawn { segments, residuals, cutoff, because })
+    Ok(DrawnCurve { segments, residuals, cutoff, because })
 }

@@ -33,7 +33,7 @@ pub(in crate::measured) struct Kink {
 
 /// The turn of the path between two neighbours.
 #[derive(Debug, Clone, Copy)]
-struct Turn {
+struct KinkTurn {
     /// The one of the two that lies better on both sides' parabolas, and the turn there.
     kink: Kink,
     /// Mean square of the distances of the points from their parabolas \[mm²\], and how many of these are free.
@@ -56,12 +56,12 @@ pub(in crate::measured) fn kinks(points: &[Point], least: f64, size: f64) -> Vec
         path.push(path[k] + distance(&pair[0], &pair[1]));
     }
     let gaps = LEAST_AT_END - 1..points.len().saturating_sub(LEAST_AT_END);
-    let turns: Vec<Turn> = gaps.map(|gap| turn(points, &path, gap, window)).collect();
+    let turns: Vec<KinkTurn> = gaps.map(|gap| turn(points, &path, gap, window)).collect();
     let mut noises: Vec<f64> = turns.iter().map(|turn| turn.noise).collect();
     noises.sort_by(f64::total_cmp);
     let usual = noises.get(noises.len() / 2).copied().unwrap_or(0.0);
     let mut out: Vec<Kink> = Vec::new();
-    for Turn { kink, noise, free, spread } in turns {
+    for KinkTurn { kink, noise, free, spread } in turns {
         // The noise of few points may be small by chance, beside bad points too.
         let own = noise * (1.0 + (FEW / free).powi(2)).powi(2);
         let by_noise = SIGNIFICANT * spread * own.max(usual).sqrt();
@@ -81,7 +81,7 @@ pub(in crate::measured) fn kinks(points: &[Point], least: f64, size: f64) -> Vec
 }
 
 /// Fits the parabolas on both sides of the gap behind a point. `path` holds the arc length at each point.
-fn turn(points: &[Point], path: &[f64], gap: usize, window: f64) -> Turn {
+fn turn(points: &[Point], path: &[f64], gap: usize, window: f64) -> KinkTurn {
     let [before, after] =
         [OneSide::new(points, path, gap, false, window), OneSide::new(points, path, gap + 1, true, window)];
     let step = path[gap + 1] - path[gap];
@@ -95,7 +95,7 @@ fn turn(points: &[Point], path: &[f64], gap: usize, window: f64) -> Turn {
     let at = if off(&after, &points[gap]) < off(&before, &points[gap + 1]) { gap } else { gap + 1 };
     let free = (before.free + after.free).max(1.0);
     let noise = (before.squares + after.squares) / free;
-    Turn { kink: Kink { at, angle }, noise, free, spread: before.spread.hypot(after.spread) }
+    KinkTurn { kink: Kink { at, angle }, noise, free, spread: before.spread.hypot(after.spread) }
 }
 
 /// The points on one side of a gap.

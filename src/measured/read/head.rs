@@ -7,7 +7,7 @@ use crate::measured::unit::Unit;
 
 /// The head of a table.
 #[derive(Debug)]
-pub(super) struct Head<'a> {
+pub(super) struct TableHead<'a> {
     /// Names of the columns, as the file writes them; none without a row of names.
     names: Vec<String>,
     /// Units of the columns by their titles or by the row of units, with the line.
@@ -16,7 +16,7 @@ pub(super) struct Head<'a> {
     of_lines: Vec<(Unit, Line<'a>)>,
 }
 
-impl<'a> Head<'a> {
+impl<'a> TableHead<'a> {
     /// Reads the lines before the first row of numbers; `width` is the number of columns.
     pub(super) fn of(lines: &[Line<'a>], split: &[Vec<&str>], width: usize) -> Self {
         let mut head = Self { names: Vec::new(), of_columns: vec![None; width], of_lines: Vec::new() };

@@ -4,7 +4,7 @@
 //! which mark is decimal is what no group of three digits explains. A row without a value is a gap, blocks of rows are sections.
 
 use super::dialect::{Dialect, Marks, is_missing, is_numeric};
-use super::head::{self, Head};
+use super::head::{self, TableHead};
 use super::points::{ColumnChoice, Points};
 use super::scan::{Line, clipped, last_place, lines};
 use super::slices::position_and_file;
@@ -54,7 +54,7 @@ pub(in crate::measured) fn read_table(
     let Some((width, first)) = shape(&rows, &split)? else {
         return Err(no_rows(text, &rows));
     };
-    let head = Head::of(&rows[..first], &split[..first], width);
+    let head = TableHead::of(&rows[..first], &split[..first], width);
     let (at, open) = choose(rows[first], &split, (width, first), &head, wanted)?;
     let kept = rows.into_iter().zip(split).skip(first);
     let body: Vec<Row> = kept
@@ -147,7 +147,7 @@ fn choose(
     line: Line,
     split: &[Vec<&str>],
     (width, first): (usize, usize),
-    head: &Head,
+    head: &TableHead,
     wanted: Option<&[Column; 2]>,
 ) -> Result<([usize; 2], Option<ColumnChoice>)> {
     let Some([a, b]) = wanted else {

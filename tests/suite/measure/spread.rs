@@ -31,7 +31,10 @@ fn noise_predicts_the_scatter_of_repeats() -> Result<()> {
         let repeats: Result<Vec<Measures>> = (0..40)
             .map(|_| measure(&again.sample(SIGMA, &mut deviates)?, side, Some(&nominal), &options))
             .collect();
-        let found = repeated(&repeats?.iter().collect::<Vec<_>>())?;
+        let repeats = repeats?;
+        let found = repeated(&repeats.iter().collect::<Vec<_>>())?;
+        let findings: Vec<&String> = repeats.iter().flat_map(|of| &of.findings).collect();
+        assert!(findings.is_empty(), "{name}: {findings:?}");
         for quantity in quantities {
             let (Some(noise), Some(repeats)) = (predicted.spread(quantity), found.spread(quantity)) else {
                 panic!("{quantity:?}: {predicted:?}");

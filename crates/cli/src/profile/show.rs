@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::source::SourcedProfile;
 use crate::answer::counted;
-use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record, Surface, spoken};
+use wheelrail::measured::{CurveKind, CurveRecord, Measured, Record, Wording, spoken};
 use wheelrail::profile::{Profile, Shape};
 
 /// Returns the description of a profile: name and source; how a measured file was read and fitted; segments and joints. The
@@ -44,7 +44,7 @@ fn record(out: &mut String, Measured { record, points, .. }: &Measured) {
         let _ = writeln!(out, "repair     {}: {points}, {places}", name(&repair.repair));
     }
     for finding in &record.warnings {
-        let found = spoken(&finding.found, Surface::CommandLine);
+        let found = spoken(&finding.found, Wording::CommandLine);
         let _ = writeln!(out, "finding    {}, {}: {found}", name(&finding.check), finding.place);
     }
     let x = || points.iter().map(|point| point.x);

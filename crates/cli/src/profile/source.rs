@@ -7,7 +7,7 @@ use clap::Args;
 use super::options::{BodyOption, MeasuredArguments};
 use crate::output::refuse_taken;
 use wheelrail::error::{Error, Result};
-use wheelrail::measured::{CurveKind, Format, Measured, Options, Surface, spoken_error};
+use wheelrail::measured::{CurveKind, Format, Measured, Options, Wording, spoken_error};
 use wheelrail::profile::{Profile, Side, standards};
 use wheelrail::scene::{self, ProfileSource};
 
@@ -82,7 +82,7 @@ impl SourceArguments {
         }
         let options = Options { curve: options.curve.or(curve.filter(|_| !drawn)), ..options };
         let content = scene::read_profile(path, side, &options)
-            .map_err(|error| spoken_error(error, Surface::CommandLine))?;
+            .map_err(|error| spoken_error(error, Wording::CommandLine))?;
         Ok(SourcedProfile { side: side.or_else(|| Format::body_of_file(&self.profile)), content })
     }
 

@@ -71,7 +71,7 @@ fn a_sweep_warns_of_its_scene() {
 #[test]
 fn hertz_s_pressure_is_left_out_where_a_half_space_decided() {
     let by_offset = ["offset = 0.0", "offset = -3.0", "offset = 4.5"];
-    let cases = by_offset.map(|offset| (offset, "load = 60000.0", false));
+    let cases = by_offset.map(|offset| (offset, "load = 60000.0\nframe = \"contact\"", false));
     for (offset, patch, by_hertz) in cases.into_iter().chain([("offset = 4.5", "approach = 0.05", true)]) {
         let formats = "[output]\nformats = [\"html\"]\n";
         let folder = scene(&format!("{BODIES}[contact]\n{offset}\n[patch]\n{patch}\n{formats}"));

@@ -198,8 +198,9 @@ fn bad_calls_name_the_key_and_leave_nothing() {
 fn a_march_says_where_its_rail_has_a_hole() {
     let folder = TempDir::new().unwrap();
     let here = folder.path();
+    // So curved that a wheel touches the crown: on a flatter one it is the end of the slices that a flange's root touches.
     for (name, from) in [("whole.toml", -30.0), ("half.toml", 5.0)] {
-        let arc = format!("center = [0.0, -300.0], radius = 300.0, half = \"upper\", x = [{from:?}, 30.0]");
+        let arc = format!("center = [0.0, -100.0], radius = 100.0, half = \"upper\", x = [{from:?}, 30.0]");
         std::fs::write(here.join(name), format!("segments = [{{ arc = {{ {arc} }} }}]\n")).unwrap();
     }
     let slices = "0 1\n5\n0\n1\n0 'whole.toml'\n100 'whole.toml'\n150 'half.toml'\n200 'whole.toml'\n300 'whole.toml'\n";

@@ -71,7 +71,7 @@ fn a_dense_scan_is_read_to_its_noise() {
 #[test]
 fn a_notch_between_blade_and_stock_rail_is_read() {
     let scene = defects().join("v-notch.toml");
-    let output = wheelrail(&["sweep", scene.to_str().unwrap(), "--lateral=-2:2:2", "--csv"]);
+    let output = wheelrail(&["sweep", scene.to_str().unwrap(), "--lateral=-2:2:2"]);
     let said = on_stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -71,7 +71,7 @@ fn simpack_wheels_descend_and_a_file_on_its_head_is_kept_by_its_definition_and_t
     std::fs::write(here.join("up.prw"), file.replace("mirror.z       =  0", "mirror.z       =  1")).unwrap();
     let shown = text(here, &["show", "up.prw"]);
     assert!(shown.contains("z = -1 second") && shown.contains("finding    orientation"), "{shown}");
-    assert!(shown.contains("it is kept, `flip_z = false` would change it"), "{shown}");
+    assert!(shown.contains("it is kept, `--flip-z false` would change it"), "{shown}");
     let turned = text(here, &["show", "up.prw", "--flip-z", "false"]);
     assert!(turned.contains("z = 1 second") && !turned.contains("orientation"), "{turned}");
 }
