@@ -213,10 +213,10 @@ impl NoisyPoints {
         };
         let farthest = [from, to].map(|j| local(j)[0].abs()).into_iter().fold(window, f64::max) * 1.01;
         let (mut moments, mut right) = ([0.0; 5], [0.0; 3]);
-        for j in from..=to {
+        for (j, weight) in weights.iter().enumerate().take(to + 1).skip(from) {
             let [u, v] = local(j);
             let u = u / farthest;
-            let mut power = weights[j] * (1.0 - u * u).max(0.0);
+            let mut power = weight * (1.0 - u * u).max(0.0);
             for (degree, moment) in moments.iter_mut().enumerate() {
                 *moment += power;
                 if let Some(right) = right.get_mut(degree) {

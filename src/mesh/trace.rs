@@ -20,8 +20,8 @@ const SEARCHED_INTERVALS: usize = 64;
 const DEEPEST: u32 = 20;
 
 /// Returns stations in profile axes, in the order of the chain: from C in both directions until ξ leaves the interval `xi`
-/// of the contact frame, which is widened to hold C. C is one of them. The chord between two neighbours is within
-/// `tolerance` \[mm\] of the profile.
+/// of the contact frame, which is widened to hold C. C is one of them; where the frame's origin is off the profile, the profile's point over
+/// it takes its place. The chord between two neighbours is within `tolerance` \[mm\] of the profile.
 ///
 /// # Errors
 /// More than 10⁵ points.
@@ -32,7 +32,7 @@ pub(super) fn trace(body: &Body, xi: Interval, tolerance: f64) -> Result<Vec<Sta
     if xi.low < 0.0 {
         stations.extend(tracer.walk(contact, xi.low, false)?.into_iter().rev());
     }
-    stations.push(body.point.station);
+    stations.push(tracer.first(contact));
     if xi.high > 0.0 {
         stations.extend(tracer.walk(contact, xi.high, true)?);
     }
@@ -66,6 +66,12 @@ impl Tracer<'_> {
         nearest.unwrap_or(if xi(0.0).abs() <= xi(1.0).abs() { 0.0 } else { 1.0 })
     }
 
+    /// Returns C, or the point of the profile at this share of the contact segment if C is farther than the tolerance from it.
+    fn first(&self, contact: f64) -> Station {
+        let (own, here) = (self.body.point.station, at(self.segment(self.body.point.segment), contact));
+        if (point(&here) - point(&own)).norm() > self.tolerance { here } else { own }
+    }
+
     /// Returns the stations beyond C, without C, until ξ passes `limit` or the chain ends.
     fn walk(&self, contact: f64, limit: f64, forward: bool) -> Result<Vec<Station>> {
         let (index, n) = (self.body.point.segment, self.body.profile().segments().len());
@@ -75,7 +81,7 @@ impl Tracer<'_> {
             let far = if forward { 1.0 } else { 0.0 };
             let from = if k == index { contact } else { 1.0 - far };
             let segment = self.segment(k);
-            let near = stations.last().map_or(self.body.point.station, |last| *last);
+            let near = stations.last().copied().unwrap_or_else(|| self.first(contact));
             let begin = at(segment, from);
             if (point(&begin) - point(&near)).norm() > self.tolerance {
                 stations.push(begin);

@@ -435,7 +435,7 @@ fn wheels_that_do_not_vary_have_the_curvatures_of_plain_ones() -> Result<()> {
             // Two places as low as each other, or one of a stretch.
             continue;
         }
-        let [own, other] = [&plain, &varying].map(|placement| wheelrail::load::curvatures(placement));
+        let [own, other] = [&plain, &varying].map(wheelrail::load::curvatures);
         assert_eq!(own.a_per_mm.is_nan(), other.a_per_mm.is_nan(), "{place}: {own:?} {other:?}");
         if own.a_per_mm.is_nan() {
             continue;

@@ -77,7 +77,7 @@ fn random_list(random: &mut Random) -> RandomList {
             features: Vec::new(),
             measured_along: None,
         });
-        if let Some((last, was_cut)) = before.filter(|(_, was_cut)| cut || *was_cut) {
+        if let Some((last, _)) = before.filter(|(_, was_cut)| cut || *was_cut) {
             // A slice between two holes has no surface either: it has no neighbour.
             match holes.last_mut() {
                 Some(Interval { high, .. }) if *high == last => *high = at,

@@ -63,7 +63,9 @@ for name in ("rail", "wheel"):
     body = pyvista.read(folder / f"{name}.vtu")
     checks(f"{name}.vtu holds triangles", set(body.celltypes) == {5}, f"{body.n_cells} triangles")
     origin = np.abs(body.points).max(axis=1).min()
-    checks(f"{name}.vtu has C for a point", origin <= 1e-12, f"off by {origin:.1e} mm")
+    # In a weighted frame the wheel does not touch at the origin.
+    touches = name == "rail" or folder.summary["curvatures"]["a_per_mm"] is not None
+    checks(f"{name}.vtu has C for a point", origin <= 1e-12 or not touches, f"off by {origin:.1e} mm")
     facing = (1 if name == "rail" else -1) * body.extract_surface(algorithm="geometry").face_normals[:, 2]
     at_origin = np.argmin(np.linalg.norm(body.cell_centers().points, axis=1))
     checks(f"{name}.vtu faces the other body at C", bool(np.isfinite(body.points).all() and facing[at_origin] > 0))
