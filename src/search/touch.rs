@@ -324,10 +324,6 @@ impl ContactSearch<'_> {
     }
 }
 
-/// Largest angle \[rad\] by which the tangents of two bodies differ where a search over a body that varies has settled: kinks of drawings
-/// turn by more.
-const SETTLED: f64 = 1e-6;
-
 impl Contact {
     /// Returns whether one of the bodies touches with a kink, a step or an end.
     pub fn kink(&self) -> bool {
@@ -417,12 +413,6 @@ impl Contact {
             Side::Wheel => (wheel, &mut here.wheel_x),
         };
         *x = section.reach().ok_or_else(nowhere)?.nearest(*x);
-        // The tangent of a wheel that varies is the rail's, as far as a search settles: at no kink it is that of the section.
-        if side == Side::Wheel && !self.wheel_kink {
-            let own = section.point(pair.wheel(), here.wheel_x).map(|point| point.station.angle());
-            let settled = own.filter(|own| (own - here.wheel_angle).abs() < SETTLED);
-            here.wheel_angle = settled.unwrap_or(here.wheel_angle);
-        }
         Ok(here.placed(&pair)?.with_loft(Arc::new(framed)))
     }
 }

@@ -106,7 +106,7 @@ def test_messages_name_keywords_and_former_names_are_known() -> None:
         wr.Profile.from_points(x, worn, side="rail")
     worn[50], worn[51] = worn[51], worn[50]
     x[50], x[51] = x[51], x[50]
-    with pytest.raises(wr.InputError, match=r"`mirror=True`.*`repair=\\[\"sort\"\\]`"):
+    with pytest.raises(wr.InputError, match=r'`mirror=True`.*`repair=\["sort"\]`'):
         wr.Profile.from_points(x, worn, side="rail")
     assert np.array_equal(wr.rail("UIC54").points(), wr.rail("54E1").points())
 
