@@ -121,10 +121,10 @@ impl Pressures {
     /// Estimates the error of the largest pressure \[N/mm²\] from that on cells twice as wide, the violation that the search left, and the
     /// height of the parabolas' top over the largest cell: 1 % beside a jump of curvature, where pressures have a corner.
     ///
-    /// What cells do not show of s adds to it, by how far the pressure there may pass the largest one: see [`Self::hidden`].
+    /// What cells do not show of s adds to it, by how far the pressure there may pass the largest one.
     ///
     /// The estimate is some three times the error where pressures are smooth, and about the error where the curvature of s jumps. At a
-    /// kink of s the pressure has no bound, and grows with every finer grid: [`Self::unbounded`] finds them.
+    /// kink of s the pressure has no bound, and grows with every finer grid: [`sharp_edge`](crate::load::sharp_edge) finds them.
     pub fn largest_error(&self, wider: &Self) -> f64 {
         let [here, there] = [self, wider].map(|pressures| pressures.largest().pressure_n_per_mm2);
         let of_cells = self.unit * self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
