@@ -29,11 +29,12 @@ pub use limits::{Limit, Limits};
 pub use measures::Measures;
 pub use measuring::measure;
 pub use noise::{PointNoise, measure_noisy};
+#[cfg(feature = "files")]
 pub(crate) use nominal::flange_back;
 pub use options::{Align, GaugeFrom, MeasureOptions};
 pub use overlay::{Overlay, overlay};
 pub use quantity::Quantity;
+#[cfg(feature = "files")]
 pub(crate) use quantity::in_micrometres;
 pub use repeats::repeated;
-#[cfg(feature = "files")]
 pub use rows::{MeasureRow, RowColumns, csv, json, table};

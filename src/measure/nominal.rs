@@ -152,6 +152,7 @@ pub(super) fn back_of(curve: &MarkedCurve) -> Result<Back, String> {
 
 /// Returns x of a wheel's flange back \[mm\] where its profile shows it without a doubt: as a line, or as an end that stands upright to
 /// 15°, which lies within 1 mm of the back.
+#[cfg(feature = "files")]
 pub fn flange_back(wheel: &Profile) -> Option<f64> {
     back_of(&sized(wheel).ok()?).ok().map(|back| back.x)
 }

@@ -10,7 +10,6 @@ use super::polynomial::Polynomial;
 use super::segment::Segment;
 use super::station::Station;
 use crate::error::{Error, Result};
-use crate::files::file_name;
 
 /// A chain of segments, travelled from left to right, with its name and source.
 ///
@@ -108,8 +107,9 @@ impl Profile {
     }
 
     /// Returns the name for titles and pages: of a profile of a file that of the file, without its folders.
+    #[cfg(feature = "files")]
     pub fn title(&self) -> &str {
-        file_name(&self.name)
+        crate::files::file_name(&self.name)
     }
 
     /// Returns the segments from left to right.
