@@ -49,7 +49,7 @@ pub use words::{Wording, spoken, spoken_error};
 
 use serde::Serialize;
 
-use crate::error::{Error, ErrorKind, Result, finite};
+use crate::error::{Error, ErrorKind, Result};
 use crate::profile::{Profile, Side};
 
 /// The decisions, repairs and fit that made a profile from a file. A run writes them to summary.json.
@@ -140,26 +140,23 @@ pub fn profile(file: &str, bytes: &[u8], side: Side, options: &Options) -> Resul
     build(file, points, side, options).map_err(|error| error.within(file))
 }
 
-/// Makes the profile of points \[x, z\] that no file holds, in an order, a unit and axes that the options or the shape tell. `name`
-/// appears in messages.
+/// Makes the profile of points \[x, z\] that no file holds, in an order, a unit and axes that the options or the shape tell; a row with
+/// NaN is a gap. `name` appears in messages.
 ///
 /// # Errors
 /// Anything wrong with the options or the points, as of [`profile`]; options that choose among the contents of a file.
 pub fn of_points(name: &str, at: &[[f64; 2]], side: Side, options: &Options) -> Result<Measured> {
     options.validate()?;
     options.validate_without_file()?;
-    if at.len() < 2 {
-        return Err(Error::new(name, format!("{} points", at.len()), "2 points or more", "give all points"));
-    }
     if at.len() > MOST_POINTS {
         let (found, expected) = (format!("{} points", at.len()), format!("{MOST_POINTS} points at most"));
         return Err(Error::new(name, found, expected, "thin them out").of_kind(ErrorKind::Limit));
     }
     let mut points = Points::new(Format::Text, None);
-    for (k, &[x, z]) in at.iter().enumerate() {
-        let place = format!("{name}: point {}", k + 1);
-        let point = [finite(&place, x)?, finite(&place, z)?];
-        points.push(read::scan::Line { number: 0, text: "" }, point, 1.0)?;
+    points.take_rows(name, at)?;
+    if points.at.len() < 2 {
+        let found = format!("{} points", points.at.len());
+        return Err(Error::new(name, found, "2 points or more", "give all points"));
     }
     let placed = placed(points, side, options)?;
     drawn(name, "points".into(), placed, options, None).map_err(|error| error.within(name))
@@ -351,15 +348,16 @@ fn placed(mut read: Points, side: Side, options: &Options) -> Result<Placed> {
 fn gaps(read: &Points, points: &[Point], found: &[Finding]) -> Vec<Finding> {
     let place = |number: usize| points.iter().position(|point| point.number == number);
     let made = read.gaps.iter().filter_map(|gap| {
-        let [a, b] = [place(gap.after)?, place(gap.after + 1)?];
+        let [a, b] = [place(gap.between[0])?, place(gap.between[1])?];
         let (before, after) = (&points[a.min(b)], &points[a.max(b)]);
         let known = found.iter().any(|own| own.check == Check::Gap && own.place == before.place());
         let wide = clean::checks::distance(before, after);
         let lines = gap.lines;
+        let word = if before.line == 0 { "point" } else { "line" };
         let rows = if lines.0 == lines.1 {
-            format!("line {}", lines.0)
+            format!("{word} {}", lines.0)
         } else {
-            format!("lines {} to {}", lines.0, lines.1)
+            format!("{word}s {} to {}", lines.0, lines.1)
         };
         let text = format!("no value in {rows}: no point over {wide:.2} mm up to {}", after.place());
         (!known).then(|| Finding::gap(before, text))

@@ -84,7 +84,8 @@ fn each_defect_is_named_at_its_place_and_mended_by_its_repair() {
     let mut spiked = clean.clone();
     spiked[200].z += 0.15;
     let mut folded = clean.clone();
-    folded.splice(80..80, clean[70..80].iter().map(|p| Point { x: p.x + 0.05, z: p.z + 0.01, ..*p }));
+    let back = |p: &Point| Point { x: p.x + 0.05, z: p.z + 0.01, ..*p };
+    folded.splice(80..80, clean[70..80].iter().rev().map(back));
     let mut looped = clean.clone();
     for (k, p) in looped[120..140].iter_mut().enumerate() {
         let angle = std::f64::consts::TAU * k as f64 / 20.0;
@@ -154,5 +155,31 @@ fn files_name_their_body() -> Result<()> {
         body("wheel.txt", include_bytes!("../../tests/profiles/wheel.prw"), &header)?,
         Some(Side::Wheel)
     );
+    Ok(())
+}
+
+#[test]
+fn rows_of_nan_are_gaps_as_in_files() -> Result<()> {
+    let truth = write::sample(&standards::wheel("S1002")?, 0.5)?;
+    let rows = |k: usize| if (100..104).contains(&k) { [truth[k][0], f64::NAN] } else { truth[k] };
+    let rows: Vec<[f64; 2]> = (0..truth.len()).map(rows).collect();
+    let text: String = rows.iter().map(|[x, z]| format!("{x} {z}\n")).collect();
+    let options = Options { mirror: Some(false), flip_z: Some(false), ..Options::default() };
+    let of_rows = of_points("rows", &rows, Side::Wheel, &options)?;
+    let of_text = profile("rows.txt", text.as_bytes(), Side::Wheel, &options)?;
+    assert_eq!(of_rows.profile.segments(), of_text.profile.segments());
+    let gaps = |of: &Measured| -> Vec<String> {
+        let gaps = of.record.warnings.iter().filter(|finding| finding.check == Check::Gap);
+        gaps.map(|finding| format!("{}: {}", finding.place, finding.found)).collect()
+    };
+    assert!(
+        matches!(&gaps(&of_rows)[..], [only] if only.starts_with("point 100: no value in points 101 to 104:")
+            && only.ends_with("up to point 105")),
+        "{:?}",
+        gaps(&of_rows)
+    );
+    assert_eq!(gaps(&of_text).len(), 1);
+    let infinite = of_points("rows", &[[0.0, 0.0], [1.0, f64::INFINITY]], Side::Wheel, &options).err();
+    assert!(infinite.is_some_and(|error| error.to_string().contains("rows: point 2")));
     Ok(())
 }

@@ -21,6 +21,14 @@ impl Fold {
         points[..self.from].iter().rev().take_while(|p| along(p) > 0.0).count()
     }
 
+    /// Returns the point from which the path jumps back in one step; `None` if it runs back point by point.
+    fn jump(&self, points: &[Point]) -> Option<usize> {
+        let steps = || (self.from..self.to).map(|k| (k, distance(&points[k], &points[k + 1])));
+        let (k, longest) = steps().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let whole: f64 = steps().map(|(_, length)| length).sum();
+        (2.0 * longest > whole).then_some(k)
+    }
+
     /// Names the shorter part of the path on one side of a single reversal, as the file has it.
     fn beyond(&self, points: &[Point]) -> String {
         let (before, after) = (&points[..self.from], &points[self.from + 1..]);
@@ -49,6 +57,24 @@ impl Fold {
             _ => Finding::new(Check::ZigZag, first, format!("a zig-zag back to {}", last.place())),
         }
     }
+}
+
+/// Least share of the points in each of several scans of one profile, a quarter: what is shorter is a slip.
+const SCAN: usize = 4;
+
+/// Returns whether points are scans of neighbouring parts of one profile, one after the other, as several scanners on one car give them:
+/// each part is in order, and overlaps the next over less than half of it. Their order is known, and no repair to be asked for.
+pub(super) fn are_scans(points: &[Point]) -> bool {
+    let folds = folds(&Path::of(points));
+    let jumps: Vec<usize> = folds.iter().filter_map(|fold| fold.jump(points)).collect();
+    let starts: Vec<usize> =
+        [0].into_iter().chain(jumps.iter().map(|k| k + 1)).chain([points.len()]).collect();
+    let lengths: Vec<usize> = starts.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).collect();
+    let over = |k: usize| (1..lengths[k].min(lengths[k + 1]).div_ceil(2)).contains(&folds[k].overrun(points));
+    !folds.is_empty()
+        && jumps.len() == folds.len()
+        && lengths.iter().all(|length| length * SCAN >= points.len())
+        && (0..folds.len()).all(over)
 }
 
 /// Finds where the path runs back. Runs off the curve do not count.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::checks::{distance, same};
 use super::loops;
-use super::order::{Fold, folds};
+use super::order::{Fold, are_scans, folds};
 use super::runs::Path;
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
@@ -28,11 +28,15 @@ pub struct Repaired {
     pub places: Vec<String>,
 }
 
-/// Makes the allowed repairs, duplicates first and loops last. Returns those that touched a point.
+/// Makes the allowed repairs, duplicates first and loops last; scans of neighbouring parts are sorted in any case. Returns those that
+/// touched a point.
 pub fn repair(points: &mut Vec<Point>, allowed: &[Repair]) -> Vec<Repaired> {
     let order = [Repair::DropDuplicates, Repair::Sort, Repair::RemoveSpikes, Repair::CutLoops];
     let mut done = Vec::new();
-    for repair in order.into_iter().filter(|repair| allowed.contains(repair)) {
+    for repair in order {
+        if !allowed.contains(&repair) && !(repair == Repair::Sort && are_scans(points)) {
+            continue;
+        }
         let mut touched: Vec<Point> = Vec::new();
         for _ in 0..ROUNDS {
             let now = match repair {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::scan::{Line, last_place};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, finite};
 use crate::measured::Format;
 use crate::measured::column::Column;
 use crate::numerics::interval::Interval;
@@ -130,9 +130,9 @@ pub struct Points {
 /// Rows of a file that have no value, between two of its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Gap {
-    /// Number of the point before them.
-    pub after: usize,
-    /// The first and the last of these lines.
+    /// Numbers of the points before and after them.
+    pub between: [usize; 2],
+    /// The first and the last of these lines; of points that no file holds, of their rows.
     pub lines: (usize, usize),
 }
 
@@ -228,9 +228,12 @@ impl Points {
         self.sections = self.profiles();
     }
 
-    pub(in crate::measured) fn push(&mut self, line: Line, [x, z]: [f64; 2], weight: f64) -> Result<()> {
-        let number = self.at.len() + 1;
-        if number > MOST_POINTS {
+    pub(in crate::measured) fn push(&mut self, line: Line, at: [f64; 2], weight: f64) -> Result<()> {
+        self.push_numbered(self.at.len() + 1, line, at, weight)
+    }
+
+    fn push_numbered(&mut self, number: usize, line: Line, [x, z]: [f64; 2], weight: f64) -> Result<()> {
+        if self.at.len() >= MOST_POINTS {
             return Err(line.error(
                 "one more point",
                 format!("{MOST_POINTS} points at most"),
@@ -238,9 +241,26 @@ impl Points {
             ));
         }
         if let (Some(lines), Some(before)) = (self.pending.take(), self.at.last()) {
-            self.gaps.push(Gap { after: before.number, lines });
+            self.gaps.push(Gap { between: [before.number, number], lines });
         }
         self.at.push(Point { x, z, weight, number, line: line.number });
+        Ok(())
+    }
+
+    /// Takes rows \[x, z\] that no file holds; NaN is no value. Points are numbered by their rows.
+    ///
+    /// # Errors
+    /// An infinite coordinate, at the place that is named before the row's number; more points than [`MOST_POINTS`].
+    pub(in crate::measured) fn take_rows(&mut self, place: &str, rows: &[[f64; 2]]) -> Result<()> {
+        for (row, &[x, z]) in (1..).zip(rows) {
+            if x.is_nan() || z.is_nan() {
+                self.no_value(Line { number: row, text: "" });
+                continue;
+            }
+            let place = format!("{place}: point {row}");
+            let at = [finite(&place, x)?, finite(&place, z)?];
+            self.push_numbered(row, Line { number: 0, text: "" }, at, 1.0)?;
+        }
         Ok(())
     }
 
@@ -287,7 +307,7 @@ impl Points {
         };
         let to = self.sections.get(k + 1).copied().unwrap_or(self.at.len());
         let numbers = from..to;
-        self.gaps.retain(|gap| numbers.contains(&gap.after));
+        self.gaps.retain(|gap| numbers.contains(&gap.between[0]));
         self.at = self.at[from..to].to_vec();
         self.sections = vec![0];
         Ok(self)

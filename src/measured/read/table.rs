@@ -309,7 +309,7 @@ mod tests {
     #[test]
     fn rows_without_values_are_gaps_and_blocks_are_profiles() -> Result<()> {
         let points = read_table("1 2\n2 NaN\n3 1.#QNAN\n4 2\n5 2\n", Format::Text, None)?;
-        assert_eq!(points.gaps, [Gap { after: 1, lines: (2, 3) }]);
+        assert_eq!(points.gaps, [Gap { between: [1, 2], lines: (2, 3) }]);
         assert_eq!(points.at.len(), 3);
         let block = |z: f64| (0..9).map(|k| format!("{k};{z}\n")).collect::<String>();
         for (text, sections) in [

@@ -249,7 +249,7 @@ fn noisy_scans_are_read_at_any_spacing() {
                 points.sort_by(|a, b| a[0].total_cmp(&b[0]));
             }
         }
-        match of_points("scan", &points, truth.side, &options(&[Repair::Sort])) {
+        match of_points("scan", &points, truth.side, &options(&[])) {
             Err(error) => {
                 refused += 1;
                 println!(
@@ -274,10 +274,8 @@ fn two_scanners_and_a_notch_are_read() -> Result<()> {
         let bytes = std::fs::read(repository("tests/defects").join(name)).expect(name);
         profile(name, &bytes, Side::Rail, &options(repair))
     };
-    let error =
-        read("two-scanners-appended.txt", &[]).err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(error.contains("a zig-zag back to point 421") && error.contains("sort"), "{error}");
-    let sorted = read("two-scanners-appended.txt", &[Repair::Sort])?;
+    let sorted = read("two-scanners-appended.txt", &[])?;
+    assert!(matches!(&sorted.record.repairs[..], [only] if only.repair == Repair::Sort && only.points > 100));
     assert!(sorted.points.windows(2).all(|pair| pair[0].x <= pair[1].x), "sorted by x");
     assert_eq!(sorted.points.len(), 840);
     let notch = read("c17_d_vnotch.txt", &[])?;
