@@ -213,10 +213,12 @@ impl NoisyPoints {
         };
         let farthest = [from, to].map(|j| local(j)[0].abs()).into_iter().fold(window, f64::max) * 1.01;
         let (mut moments, mut right) = ([0.0; 5], [0.0; 3]);
+        // Where most of a window is off the parabola it is the shape that is none, and all its points count.
+        let few = 2.0 * weights[from..=to].iter().sum::<f64>() < (to - from + 1) as f64;
         for (j, weight) in weights.iter().enumerate().take(to + 1).skip(from) {
             let [u, v] = local(j);
             let u = u / farthest;
-            let mut power = weight * (1.0 - u * u).max(0.0);
+            let mut power = if few { 1.0 } else { *weight } * (1.0 - u * u).max(0.0);
             for (degree, moment) in moments.iter_mut().enumerate() {
                 *moment += power;
                 if let Some(right) = right.get_mut(degree) {
