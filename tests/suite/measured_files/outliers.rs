@@ -249,7 +249,8 @@ fn noisy_scans_are_read_at_any_spacing() {
                 points.sort_by(|a, b| a[0].total_cmp(&b[0]));
             }
         }
-        match of_points("scan", &points, truth.side, &options(&[])) {
+        // Points 2 µm apart come to lie at one place by the file's last digit.
+        match of_points("scan", &points, truth.side, &options(&[Repair::DropDuplicates])) {
             Err(error) => {
                 refused += 1;
                 println!(
@@ -259,8 +260,9 @@ fn noisy_scans_are_read_at_any_spacing() {
                 );
             }
             Ok(read) => {
-                let used: Vec<_> = read.points.iter().map(|point| point.number).collect();
-                assert_eq!(used.len(), points.len(), "{case}");
+                let twice = read.record.repairs.iter().filter(|done| done.repair == Repair::DropDuplicates);
+                let dropped: usize = twice.map(|done| done.points).sum();
+                assert_eq!(read.points.len() + dropped, points.len(), "{case}");
             }
         }
     }
