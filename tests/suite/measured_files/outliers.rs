@@ -137,11 +137,18 @@ fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
             continue;
         }
         let plain = said(&of_points("scan", &points, truth.side, &options(&[])));
-        silent += u64::from(plain.is_empty());
-        match of_points("scan", &points, truth.side, &options(&[Repair::RemoveSpikes])) {
-            Err(_) => refused += 1,
-            Ok(read) => wrong += u64::from(read.points.iter().any(|point| off[point.number - 1])),
-        }
+        let is_silent = plain.is_empty();
+        silent += u64::from(is_silent);
+        let (what, was) = match of_points("scan", &points, truth.side, &options(&[Repair::RemoveSpikes])) {
+            Err(error) => (error.to_string(), &mut refused),
+            Ok(read) if read.points.iter().any(|point| off[point.number - 1]) => {
+                ("wrong after the repair".to_owned(), &mut wrong)
+            }
+            Ok(_) if is_silent => ("silent".to_owned(), &mut 0),
+            Ok(_) => continue,
+        };
+        *was += 1;
+        println!("case {case}, {} points every {} mm: {what}", points.len(), scan.spacing);
     }
     println!(
         "runs of bad rows: {cases} profiles, {silent} silent, {wrong} wrong after the repair, {refused} refused after it"
