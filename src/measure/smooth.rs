@@ -271,3 +271,40 @@ fn median(mut values: Vec<f64>) -> f64 {
     }
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured::{CurveKind, Options, of_points};
+    use crate::profile::Side;
+
+    #[test]
+    fn smoothed_curves_stay_by_their_points_where_a_ledge_is() -> crate::error::Result<()> {
+        for rough in 6..20 {
+            for depth in [0.05, 0.1, 0.2, 0.3] {
+                let mut deviates = Deviates::new(rough as u64, 1);
+                let mut height = |k: usize| {
+                    let x = 0.2 * k as f64 - 30.0;
+                    // A ledge over a few points with noise of 0.4 µm.
+                    let ledge = if (200..200 + rough).contains(&k) { depth } else { 0.0 };
+                    [x, 4e-4 * deviates.draw() + ledge - 0.005 * x * x]
+                };
+                let options = Options {
+                    mirror: Some(false),
+                    flip_z: Some(false),
+                    curve: Some(CurveKind::Interpolation),
+                    ..Options::default()
+                };
+                let points: Vec<[f64; 2]> = (0..300).map(height).collect();
+                let profile = of_points("rough", &points, Side::Rail, &options)?.profile;
+                let Some((marks, _)) = NoisyPoints::new(&profile).smoothed() else { continue };
+                assert!(marks.len() < 3000, "{rough} {depth}: {}", marks.len());
+                let near = |mark: &Mark| {
+                    points.iter().any(|&at| distance(at, [mark.station.x, mark.station.z]) < 0.5)
+                };
+                assert!(marks.iter().all(near), "{rough} {depth}");
+            }
+        }
+        Ok(())
+    }
+}
