@@ -100,8 +100,7 @@ impl Band {
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
         let noise = self.noise(outline);
         let mut stretches = Vec::new();
-        let on_rail = outline.slicer.by_roots.is_none() && outline.slicer.by_samples.is_none();
-        let mut finder = on_rail.then(|| EdgeFinder::new(outline.slicer.placement()));
+        let mut finder = outline.slicer.is_over_raised().then(|| EdgeFinder::new(outline.slicer.placement()));
         // ξ, the square of half the width and the middle of the last two slices that were found one by one.
         let mut known = [[f64::NAN; 3]; 2];
         let edges = |xi: &Lanes| {

@@ -7,7 +7,9 @@ use super::by_roots::ByRoots;
 use super::by_roots::turns::LeastGap;
 use super::by_samples::BySamples;
 use super::divided::lines_reenter;
-use super::in_valleys::slicer::{Edge, InValleys, STEP_ROUNDINGS, between, on_surface};
+use super::in_valleys::slicer::{
+    Edge, InValleys, NEAR_GUESS, STEP_ROUNDINGS, between, newton_from, on_surface,
+};
 use super::level::{Level, joints};
 use super::raised::RaisedLanes;
 use crate::conformal::Reference;
@@ -142,6 +144,12 @@ impl<'a> Slicer<'a> {
         self.level().and_then(Level::normal_gap).is_some()
     }
 
+    /// Returns whether the patch of swept bodies is where the points of [`Self::raised`] lie in the wheel.
+    pub(super) fn is_over_raised(&self) -> bool {
+        let on_crown = self.by_roots.is_some() && self.is_over_rail();
+        self.by_samples.is_none() && !on_crown
+    }
+
     /// Returns the approach δ \[mm\].
     pub fn approach(&self) -> f64 {
         self.approach
@@ -218,20 +226,33 @@ impl<'a> Slicer<'a> {
         Some([Edge { eta: -edge.eta, ..edge }, edge])
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] next to a guess; of slices from valleys, of the one that holds `valley`. Returns
-    /// `None` by the formula without skew, from samples, and if they are not surely those of the slice that was guessed.
+    /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess; of slices from valleys, of the one that holds `valley`.
+    /// Returns `None` by the formula without skew, from samples, and unless both settle next to the guess, the gap rises outwards there, and
+    /// neither a second valley or ridge nor a step or end of a surface is in the guess or next to it.
     pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
-        match &mut self.by_roots {
-            Some(by_roots) => by_roots.edges_near(xi, guess),
-            None => self.in_valleys.as_mut()?.edges_near((xi, valley?), guess),
+        if let Some(in_valleys) = &self.in_valleys {
+            let around = Interval::from(guess).grown(NEAR_GUESS * (guess[1] - guess[0]));
+            let place = in_valleys.raised.xi(xi);
+            if !in_valleys.valleys.is_alone_within(valley?, place, around) {
+                return None;
+            }
         }
+        let upper = self.edge_near(xi, guess, 1)?;
+        let lower = if self.is_mirrored(valley) { -upper } else { self.edge_near(xi, guess, 0)? };
+        let stepped = self.by_roots.as_mut().is_some_and(|by_roots| by_roots.may_step(xi, [lower, upper]));
+        (!stepped).then_some([lower, upper])
     }
 
-    /// Returns one end of the slice at ξ \[mm\] next to a guess of both, as [`Self::edges_near`] does.
-    pub(super) fn edge_near(&mut self, xi: f64, guess: [f64; 2], side: usize) -> Option<f64> {
-        match &mut self.by_roots {
-            Some(by_roots) => by_roots.edge_near(xi, guess, side).map(|(eta, _)| eta),
-            None => self.in_valleys.as_mut()?.edge_near(xi, guess, side),
+    /// Returns one end of the slice at ξ \[mm\] by Newton's steps from a guess of both. `None` by the formula, from samples, and as for
+    /// [`newton_from`].
+    pub(super) fn edge_near(&mut self, xi: f64, [low, high]: [f64; 2], side: usize) -> Option<f64> {
+        let (guess, outward, near) = ([low, high][side], [-1.0, 1.0][side], NEAR_GUESS * (high - low));
+        match (&mut self.by_roots, &mut self.in_valleys) {
+            (Some(by_roots), _) => newton_from(|eta| by_roots.miss_and_slope(xi, eta), guess, outward, near),
+            (None, Some(InValleys { raised, .. })) => {
+                newton_from(|eta| raised.gap_and_slope(xi, eta), guess, outward, near)
+            }
+            (None, None) => None,
         }
     }
 
@@ -246,7 +267,7 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// Returns the raised points at 16 ξ \[mm\] of a rail.
+    /// Returns the points at 16 ξ \[mm\] of a rail, or of a roller over the tangent plane, raised by δ.
     pub(super) fn raised(&self, xi: &Lanes) -> RaisedLanes<MANY> {
         let over_plane = || RaisedLanes::over_plane(xi, self.approach);
         self.in_valleys.as_ref().map_or_else(over_plane, |in_valleys| in_valleys.raised.lanes(xi))

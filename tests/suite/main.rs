@@ -50,6 +50,7 @@ mod practice;
 mod pressures;
 mod profile_ends;
 mod promises;
+mod referee;
 mod reference_values;
 mod reference_yawed;
 mod report;

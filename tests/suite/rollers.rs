@@ -1,17 +1,19 @@
 //! Wheels on rollers: closed forms of bodies of revolution, and CONTACT's results for a wheelset on a roller rig.
 
+use crate::campaign;
 use crate::common::repository;
 use std::path::PathBuf;
 
 use serde_json::Value;
 use wheelrail::case::Arrangement;
+use wheelrail::internal::Random;
 use wheelrail::load::{
     Elastic, HalfSpace, curvatures, curvatures_at, effective_modulus, press_alone, weighted_frame,
 };
 use wheelrail::patch::Slicer;
 use wheelrail::profile::standards;
 use wheelrail::scene::{self, Scene};
-use wheelrail::search::{Contact, ONE_CONTACT, Position, Roll, Selection};
+use wheelrail::search::{Contact, ONE_CONTACT, Pose, Position, ProfilePair, Roll, Selection};
 use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
 use wheelrail::{Arc, Evaluator, Half, Interval, Pair, Patch, Placement, Profile, Segment, Window};
 use wheelrail_report::reference::ReferenceScene;
@@ -255,6 +257,40 @@ fn boundaries_on_measured_rollers_are_exact_between_and_beside_joints() {
         }
     }
     assert!(places > 4000 && corners > 150, "{places} {corners}");
+}
+
+/// Largest distance \[mm\] of a boundary's points from s = δ: what their interpolants leave of 16 digits.
+const ON_LEVEL: f64 = 1e-12;
+
+/// The points of a boundary lie on s = δ, with yaw and without.
+#[test]
+fn boundaries_on_rollers_lie_where_s_is_the_approach() {
+    let [rail, wheel] = [standards::rail("60E1"), standards::wheel("S1002")].map(|profile| profile.unwrap());
+    let (mut dice, mut worst) = (Random::new(661), [0.0f64; 2]);
+    for number in 0..campaign::scenes() {
+        let pair = Pair::new(rail.clone(), wheel.clone(), dice.between(400.0, 500.0)).unwrap();
+        let pair = pair.on_roller(dice.between(300.0, 500.0)).unwrap();
+        let yaw = *dice.pick(&[0.0, 1.0]) * dice.between(-0.05, 0.05);
+        let (offset, approach) = (dice.between(-7.0, 5.0), 10f64.powf(dice.between(-3.0, -0.5)));
+        let profiles = ProfilePair::new(&pair).unwrap();
+        let mut search = profiles.search();
+        let pose = Pose::new(offset, yaw, 0.0).unwrap();
+        let touch = search.touch(&pose, &Selection { within: 0.0, apart: ONE_CONTACT }).unwrap();
+        let placement = touch.contacts[0].placed(&pair).unwrap();
+        let mut evaluator = Evaluator::new(&placement);
+        for component in Patch::new(&placement, approach, &Window::UNBOUNDED).components {
+            for &[xi, eta] in &component.boundary {
+                let off = (evaluator.separation(xi, eta) - approach).abs();
+                let found = &mut worst[usize::from(yaw != 0.0)];
+                *found = found.max(off);
+                assert!(
+                    off < ON_LEVEL,
+                    "{number}, offset {offset}, yaw {yaw}, δ {approach}: {off:e} at {xi}"
+                );
+            }
+        }
+    }
+    println!("off s = δ by up to {worst:?}");
 }
 
 /// A window that ends at η = 0 cuts a yawed patch off its lowest places.

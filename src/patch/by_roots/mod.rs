@@ -14,7 +14,7 @@ use bounds::GapBounds;
 
 use super::divided::opening;
 use super::in_valleys::circle::{FARTHEST_SINE, Turned};
-use super::in_valleys::slicer::{Edge, NEAR_GUESS, QUADRATIC, STEP_ROUNDINGS, newton_from};
+use super::in_valleys::slicer::{Edge, QUADRATIC, STEP_ROUNDINGS};
 use super::level::Level;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
@@ -197,39 +197,22 @@ impl<'a> ByRoots<'a> {
         Edge { eta, ledge: over > self.step }
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess. Returns `None` unless both settle next to the guess, the
-    /// gap rises outwards there, and no surface steps between them.
-    pub(super) fn edges_near(&mut self, xi: f64, guess: [f64; 2]) -> Option<[f64; 2]> {
-        let (upper, ending) = self.edge_near(xi, guess, 1)?;
-        let (lower, beginning) = if self.skewed { self.edge_near(xi, guess, 0)? } else { (-upper, ending) };
-        if self.steps.iter().all(Vec::is_empty) {
-            return Some([lower, upper]);
-        }
-        let between = self.level.at(xi, lower + (upper - lower) / 2.0)?.abscissae;
-        let stepped = (0..2).any(|body| {
-            let over = Interval::around([beginning[body], between[body], ending[body]]);
-            // Between these three places the line moves along a profile like a parabola.
-            self.steps[body].iter().any(|step| step.meets(over.grown(over.width())))
-        });
-        (!stepped).then_some([lower, upper])
+    /// Returns the gap less δ \[mm\] and its slope along η; `None` where a body has no surface.
+    pub(super) fn miss_and_slope(&mut self, xi: f64, eta: f64) -> Option<[f64; 2]> {
+        let at = self.level.at(xi, eta)?;
+        Some([at.gap - self.approach, at.slopes[1]])
     }
 
-    /// Returns one end of the slice at ξ \[mm\] by Newton's steps from a guess of both, and the abscissae of the profiles' points there.
-    /// `None` as for [`newton_from`].
-    pub(super) fn edge_near(
-        &mut self,
-        xi: f64,
-        [low, high]: [f64; 2],
-        side: usize,
-    ) -> Option<(f64, [f64; 2])> {
-        let (guess, outward) = ([low, high][side], [-1.0, 1.0][side]);
-        let mut abscissae = [f64::NAN; 2];
-        let miss = |eta: f64| {
-            let at = self.level.at(xi, eta)?;
-            abscissae = at.abscissae;
-            Some([at.gap - self.approach, at.slopes[1]])
-        };
-        let eta = newton_from(miss, guess, outward, NEAR_GUESS * (high - low))?;
-        Some((eta, abscissae))
+    /// Returns whether a surface may step between two places on the line of ξ \[mm\].
+    pub(super) fn may_step(&mut self, xi: f64, [low, high]: [f64; 2]) -> bool {
+        if self.steps.iter().all(Vec::is_empty) {
+            return false;
+        }
+        let places = [low, low + (high - low) / 2.0, high].map(|eta| self.level.at(xi, eta));
+        (0..2).any(|body| {
+            let over = Interval::around(places.iter().flatten().map(|at| at.abscissae[body]));
+            // Between these three places the line moves along a profile like a parabola.
+            self.steps[body].iter().any(|step| step.meets(over.grown(over.width())))
+        })
     }
 }

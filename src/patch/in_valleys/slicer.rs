@@ -184,29 +184,6 @@ impl<'a> InValleys<'a> {
         }
     }
 
-    /// Returns both ends of a slice by Newton's steps from a guess. Returns `None` unless both settle next to the guess, s rises
-    /// outwards there, and no second valley or ridge and no end of the surface is at ξ in the guess or next to it: up to there s rises on
-    /// either side of the valley.
-    pub(in crate::patch) fn edges_near(
-        &mut self,
-        (xi, valley): (f64, usize),
-        guess: [f64; 2],
-    ) -> Option<[f64; 2]> {
-        let [low, high] = guess;
-        let around = Interval::new(low, high).grown(NEAR_GUESS * (high - low));
-        if !self.valleys.is_alone_within(valley, self.raised.xi(xi), around) {
-            return None;
-        }
-        let upper = self.edge_near(xi, guess, 1)?;
-        Some([if self.valleys.is_mirrored(valley) { -upper } else { self.edge_near(xi, guess, 0)? }, upper])
-    }
-
-    /// Returns one end of a slice by Newton's steps from a guess of both. `None` as for [`newton_from`].
-    pub(in crate::patch) fn edge_near(&mut self, xi: f64, [low, high]: [f64; 2], side: usize) -> Option<f64> {
-        let (guess, outward) = ([low, high][side], [-1.0, 1.0][side]);
-        newton_from(|eta| self.raised.gap_and_slope(xi, eta), guess, outward, NEAR_GUESS * (high - low))
-    }
-
     /// Returns the end of the slice on one side of its lowest point.
     fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);

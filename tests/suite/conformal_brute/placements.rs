@@ -89,7 +89,7 @@ impl Stock {
 }
 
 /// Rails and wheels with kinks, grooves, vertical sides, overhangs and polynomials; some wheels are met three times by a line.
-fn strange() -> wheelrail::Result<[Vec<Profile>; 2]> {
+pub fn strange() -> wheelrail::Result<[Vec<Profile>; 2]> {
     let chain = |name: &str, points: &[[f64; 2]]| {
         let lines = points.windows(2).map(|ends| Arc::line(ends[0], ends[1]).map(Segment::arc));
         Profile::new(name, "", lines.collect::<wheelrail::Result<_>>()?)
