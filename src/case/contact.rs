@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::ends::{OpenEnd, end_in_contact};
 use super::found::Found;
+use super::unmeasured::{BridgeInContact, bridge_in_contact};
 use super::wheel::ContactRegion;
 use crate::error::{Error, Result};
 use crate::load::{Curvatures, Ellipse, Feasibility, Pressures, curvatures, feasibility};
@@ -111,6 +112,11 @@ impl PlacedContact {
     /// Finds an open end of a profile at C or in the patch: pressures there are none that can be trusted.
     pub fn open_end(&self) -> Option<OpenEnd> {
         end_in_contact(&self.placement, self.whole_patch())
+    }
+
+    /// Finds a bridge over what was not measured at C or in the patch: pressures there are none that can be trusted.
+    pub fn bridge(&self) -> Option<BridgeInContact> {
+        bridge_in_contact(&self.placement, self.whole_patch())
     }
 
     /// Gives the patch over the whole plane, found once; `None` without an approach.

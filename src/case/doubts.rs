@@ -52,11 +52,13 @@ pub enum DoubtKind {
     Integrations,
     /// A list of slices defines no surface under the wheel.
     Hole,
+    /// The bodies touch where a file has no points, or points off the curve.
+    Unmeasured,
 }
 
 impl DoubtKind {
     /// All kinds.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::FlangeTip,
         Self::FlangeBack,
         Self::Lifted,
@@ -79,10 +81,11 @@ impl DoubtKind {
         Self::Speed,
         Self::Integrations,
         Self::Hole,
+        Self::Unmeasured,
     ];
 
     /// The kinds about a place of contact: those that a sweep names at each position.
-    pub const OF_CONTACT: [Self; 7] = [
+    pub const OF_CONTACT: [Self; 8] = [
         Self::FlangeTip,
         Self::FlangeBack,
         Self::Lifted,
@@ -90,6 +93,7 @@ impl DoubtKind {
         Self::RollingRadius,
         Self::Hole,
         Self::ProfileEnd,
+        Self::Unmeasured,
     ];
 
     /// Gives the word that stands for the kind in tables.
@@ -117,6 +121,7 @@ impl DoubtKind {
             Self::Speed => "speed",
             Self::Integrations => "integrations",
             Self::Hole => "hole",
+            Self::Unmeasured => "unmeasured",
         }
     }
 
@@ -178,6 +183,10 @@ impl DoubtKind {
             Self::Hole => {
                 "give features, or slices that show the same parts; the warnings about the list say which do not"
             }
+            Self::Unmeasured => {
+                "what bridges a gap or points off the curve is no surface, and pressures there are none that can be trusted: allow \
+                 repair = [\"remove-spikes\"], or measure it again; the warnings about the file name its rows"
+            }
         }
     }
 }
@@ -185,16 +194,18 @@ impl DoubtKind {
 /// The doubts about a place of contact: a number \[mm\] for each kind of [`DoubtKind::OF_CONTACT`], `None` where there is none.
 ///
 /// The numbers are x on the wheel of a contact on tip or back, the height of the tread over the rail, the distance from the
-/// tip, the rolling radius less the nominal one, and x on the wheel of a contact at the end of a profile.
+/// tip, the rolling radius less the nominal one, and x on the wheel of a contact at the end of a profile or where none was measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactDoubts(pub(super) [Option<f64>; DoubtKind::OF_CONTACT.len()]);
 
 impl ContactDoubts {
-    /// Adds the doubt about a contact at the end of a profile, at x on the wheel \[mm\].
+    /// Adds the doubt of a kind with its number \[mm\], if there is one.
     #[must_use]
-    pub(super) fn at_end(mut self, x: Option<f64>) -> Self {
-        let [.., end] = &mut self.0;
-        *end = x.or(*end);
+    pub(super) fn and(mut self, kind: DoubtKind, number: Option<f64>) -> Self {
+        let known = DoubtKind::OF_CONTACT.iter().zip(&mut self.0).find(|(known, _)| **known == kind);
+        if let Some((_, own)) = known {
+            *own = number.or(*own);
+        }
         self
     }
 
@@ -217,7 +228,7 @@ pub struct DoubtSet(u8);
 impl DoubtSet {
     /// Lists every set by ascending code.
     pub fn all() -> impl Iterator<Item = Self> {
-        (0..1 << DoubtKind::OF_CONTACT.len()).map(Self)
+        (0..=u8::MAX >> (8 - DoubtKind::OF_CONTACT.len())).map(Self)
     }
 
     /// Joins two sets.
@@ -232,7 +243,7 @@ impl DoubtSet {
         Self(bits.sum())
     }
 
-    /// Gives the number of the set, below 2⁷.
+    /// Gives the number of the set, below 2⁸.
     pub fn code(self) -> u8 {
         self.0
     }
@@ -274,6 +285,7 @@ impl Doubt {
             DoubtKind::Hole => "the list of slices defines no surface under the wheel".into(),
             DoubtKind::BeyondTread => format!("the wheel touches {value:.2} mm from the tip of its flange"),
             DoubtKind::ProfileEnd => format!("the bodies touch at the end of a profile, {on_wheel}"),
+            DoubtKind::Unmeasured => format!("the bodies touch where no surface was measured, {on_wheel}"),
             _ => {
                 let rolling = radius + value;
                 format!("the rolling radius, {rolling:.2} mm, differs by {value:.2} mm from wheel.radius")

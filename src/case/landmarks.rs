@@ -2,8 +2,9 @@
 
 use nalgebra::{Point2, UnitComplex};
 
-use super::doubts::ContactDoubts;
+use super::doubts::{ContactDoubts, DoubtKind};
 use super::ends::OpenEnds;
+use super::unmeasured::Bridges;
 use crate::lofted::LoftedBody;
 use crate::measure::flange_back;
 use crate::numerics::interval::Interval;
@@ -82,6 +83,7 @@ pub struct Landmarks {
     /// Abscissa of the flange back \[mm\] where the wheel's profile shows it.
     pub(crate) back_x: Option<f64>,
     ends: OpenEnds,
+    bridges: Bridges,
 }
 
 impl Landmarks {
@@ -97,17 +99,21 @@ impl Landmarks {
         let back = back.fold(f64::NEG_INFINITY, f64::max) - low.y;
         let tip = (median_height(&wheel) - low.y >= FLANGE).then_some(low);
         let back_x = flange_back(pair.wheel());
-        Self { pair: pair.clone(), top, tip, reach, back, back_x, ends: OpenEnds::new(pair, None) }
+        let (ends, bridges) = (OpenEnds::new(pair, None), Bridges::new(pair, None));
+        Self { pair: pair.clone(), top, tip, reach, back, back_x, ends, bridges }
     }
 
-    /// Finds the landmarks of a pair one body of which varies; the ends are that body's.
+    /// Finds the landmarks of a pair one body of which varies; the ends are that body's, and it has no bridges.
     pub fn varying(pair: &Pair, body: Option<&LoftedBody>) -> Self {
-        Self { ends: OpenEnds::new(pair, body), ..Self::new(pair) }
+        Self { ends: OpenEnds::new(pair, body), bridges: Bridges::new(pair, body), ..Self::new(pair) }
     }
 
-    /// Gives x on the wheel \[mm\] of a contact at an open end of a profile; `None` of others.
-    fn at_end(&self, contact: &Contact) -> Option<f64> {
-        self.ends.hold(contact).then_some(contact.wheel_x)
+    /// Adds what is doubtful wherever a contact lies: an open end of a profile, or no surface that was measured.
+    fn of_profiles(&self, doubts: ContactDoubts, contact: &Contact) -> ContactDoubts {
+        let x = |holds: bool| holds.then_some(contact.wheel_x);
+        doubts
+            .and(DoubtKind::ProfileEnd, x(self.ends.hold(contact)))
+            .and(DoubtKind::Unmeasured, x(self.bridges.hold(contact)))
     }
 
     /// Returns the height \[mm\] of the wheel's surface over the top of the rail, 0 where nothing of the wheel is over it: how far
@@ -120,7 +126,7 @@ impl Landmarks {
         if height.is_nan() { 0.0 } else { height }
     }
 
-    /// Finds what is doubtful about a contact but for ends of profiles; `lift` is that of its wheel \[mm\], `other` that of the other wheel.
+    /// Finds what is doubtful about a contact but for ends and bridges of profiles; `lift` is that of its wheel \[mm\], `other` that of the other wheel.
     pub(super) fn doubts(&self, at: &Touching, [lift, other]: [f64; 2]) -> ContactDoubts {
         let [x, z] = [at.wheel.x, at.wheel.y];
         let on_tip = self.tip.is_some_and(|tip| z < tip.y + TIP);
@@ -131,7 +137,7 @@ impl Landmarks {
         let off = !on_tip && !on_back && at.angles[0].abs() < TREAD && z.abs() > RADIUS_OFF;
         let lift = lifted.then_some(lift);
         let [tip, back, off] = [on_tip.then_some(x), on_back.then_some(x), off.then_some(-z)];
-        ContactDoubts([tip, back, lift, from_tip, off, None, None])
+        ContactDoubts([tip, back, lift, from_tip, off, None, None, None])
     }
 }
 
@@ -162,7 +168,8 @@ impl SideLandmarks {
         Self { right, left }
     }
 
-    /// Finds the doubts about each row of a position; rows of further contacts have only that about ends of profiles.
+    /// Finds the doubts about each row of a position; rows of further contacts have only those about ends and bridges of
+    /// profiles.
     pub fn of_rows<'a>(
         &'a self,
         rows: &'a [SweepRow],
@@ -174,13 +181,13 @@ impl SideLandmarks {
         let [left, right] = self.of_first(first);
         rows.iter().map(move |row| match row.number {
             0 => (row, if row.side == TrackSide::Right { right } else { left }),
-            _ => (row, self.of_end(row)),
+            _ => (row, self.of_profiles(row)),
         })
     }
 
-    /// Finds the doubt about a contact at the end of a profile, the one that needs no other landmark.
-    pub(super) fn of_end(&self, row: &SweepRow) -> ContactDoubts {
-        ContactDoubts::default().at_end(self.on(row.side).at_end(&row.contact))
+    /// Finds the doubts about a contact at the end of a profile, or where none was measured: those that need no other landmark.
+    pub(super) fn of_profiles(&self, row: &SweepRow) -> ContactDoubts {
+        self.on(row.side).of_profiles(ContactDoubts::default(), &row.contact)
     }
 
     /// Finds the doubts about the first contacts of the left and the right side, or of a single wheel, which is a right one.
@@ -191,7 +198,8 @@ impl SideLandmarks {
         let lifts = [lift(0), lift(1)];
         [0, 1].map(|k| {
             let doubts = touching[k].as_ref().map(|at| marks[k].doubts(at, [lifts[k], lifts[1 - k]]));
-            doubts.unwrap_or_default().at_end(first[k].and_then(|contact| marks[k].at_end(contact)))
+            let doubts = doubts.unwrap_or_default();
+            first[k].map_or(doubts, |contact| marks[k].of_profiles(doubts, contact))
         })
     }
 

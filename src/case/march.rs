@@ -2,12 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::doubts::ContactDoubts;
+use super::doubts::{ContactDoubts, DoubtKind};
 use super::ends::end_in_contact;
 use super::input::{Case, Echo, Profiles};
 use super::landmarks::SideLandmarks;
 use super::places::rows_under_load;
 use super::run::end_reached;
+use super::unmeasured::bridge_in_contact;
 use super::wheel::ContactRegion;
 use crate::error::{Result, in_order};
 use crate::search::{Event, March, Position, Stop, SweepRow};
@@ -63,7 +64,7 @@ pub struct MarchRow {
     pub normal_load: f64,
     /// Whether the end of the slices cuts its patch off, so that the approach is too large.
     pub cut_off: bool,
-    /// Whether a profile ends in the contact. The other doubts need landmarks of the section at each place.
+    /// Whether a profile ends in the contact, or shows no surface there. The other doubts need landmarks of the section at each place.
     pub doubts: ContactDoubts,
 }
 
@@ -98,7 +99,7 @@ pub fn hole_warning(places: usize) -> Option<String> {
 
 impl MarchRow {
     fn touching(row: SweepRow, landmarks: &SideLandmarks) -> Self {
-        let doubts = landmarks.of_end(&row);
+        let doubts = landmarks.of_profiles(&row);
         Self { row, approach: f64::NAN, normal_load: f64::NAN, cut_off: false, doubts }
     }
 
@@ -107,11 +108,12 @@ impl MarchRow {
         let touching = Self::touching(row, landmarks);
         let Some(ContactRegion { placement, patch, approach, loads, .. }) = region else { return touching };
         let end = end_in_contact(placement, Some(patch)).map(|_| row.contact.wheel_x);
+        let bridge = bridge_in_contact(placement, Some(patch)).map(|_| row.contact.wheel_x);
         Self {
             approach: *approach,
             normal_load: loads.iter().sum(),
             cut_off: end_reached(placement, patch).is_some(),
-            doubts: touching.doubts.at_end(end),
+            doubts: touching.doubts.and(DoubtKind::ProfileEnd, end).and(DoubtKind::Unmeasured, bridge),
             ..touching
         }
     }

@@ -227,8 +227,13 @@ impl PartPressure {
     }
 
     fn read(placement: &Placement, solved: &Pressures, wider: &Pressures) -> Self {
-        let unbounded = sharp_edge(solved, placement).map(|edge| EdgeOnRail::new(placement, edge));
-        let largest_error = if unbounded.is_some() { f64::INFINITY } else { solved.largest_error(wider) };
+        let edge = sharp_edge(solved, placement);
+        let unbounded = edge.filter(|edge| !edge.rounded).map(|edge| EdgeOnRail::new(placement, edge));
+        let largest_error = match (unbounded, edge) {
+            (Some(_), _) => f64::INFINITY,
+            (None, Some(rounded)) => solved.largest_error(wider).max(rounded.beyond_n_per_mm2),
+            (None, None) => solved.largest_error(wider),
+        };
         Self {
             largest: solved.largest(),
             largest_error,

@@ -35,6 +35,7 @@ pub(super) fn doubts_of(site: &Site, landmarks: &SideLandmarks, other: f64) -> V
     let standing = || usual::standing(marks_of(site, landmarks), &contact.placement, other);
     let mut out = if first { standing() } else { Vec::new() };
     out.extend(contact.open_end().map(usual::profile_end));
+    out.extend(contact.bridge().map(usual::unmeasured));
     let rail = contact.placement.rail().profile();
     out.extend(contact.approach.and_then(|approach| usual::approach(rail, approach, contact.is_loaded())));
     out

@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 use super::doubts::{Doubt, DoubtKind};
 use super::ends::OpenEnd;
 use super::landmarks::{Landmarks, Touching};
+use super::unmeasured::BridgeInContact;
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Profile, Side, points_along};
@@ -173,6 +174,15 @@ pub fn profile_end(end: OpenEnd) -> Doubt {
     let body = if end.side == Side::Rail { "rail" } else { "wheel" };
     let found = format!("{body}: its profile ends at x = {:.2} mm, in the contact", end.x);
     Doubt::new(DoubtKind::ProfileEnd, found)
+}
+
+/// Gives the doubt about a contact where a file shows no surface.
+pub fn unmeasured(bridge: BridgeInContact) -> Doubt {
+    let BridgeInContact { side, name, rows, x: [from, to] } = bridge;
+    let body = if side == Side::Rail { "rail" } else { "wheel" };
+    let found =
+        format!("{body}: {name}: {rows}: no surface from x = {from:.2} to {to:.2} mm, in the contact");
+    Doubt::new(DoubtKind::Unmeasured, found)
 }
 
 /// Gives the doubt about chosen points whose tangents differ by more than 2°.

@@ -62,6 +62,7 @@ pub(super) fn patch_mesh() -> PatchMesh {
         boundary: vec![chain],
         size: vec![1.0],
         chord_error: vec![0.01],
+        made: vec![0],
         points,
     };
     let nodes = mesh.points.len();

@@ -42,8 +42,8 @@ const ROUNDS: usize = 12;
 /// Most nodes made in all attempts and rounds at a component before the best mesh so far is taken: a few seconds.
 const MOST_MADE: usize = 2_000_000;
 
-/// Number of edges around a thin part above which they take the triangulation longer than as many points elsewhere: its time grows
-/// with their square.
+/// Number of edges around a thin part from which on they count more than their nodes: 5,000 take 40 ms, and 30,000 take half a second, so
+/// that these are triangulated three times at most.
 const LONG_BOUNDARY: usize = 1_000;
 
 /// Attempts at a component, each with shorter edges of the boundary than the one before.
@@ -106,6 +106,8 @@ pub struct TriangleMesh {
     /// Largest distance of the exact boundary from the edges between its nodes \[mm\], for each component: at most a
     /// hundredth of the size.
     pub chord_error: Vec<f64>,
+    /// Nodes made for each component in all attempts, and a share of the square of its edges: what the mesh has cost, at most 4·10⁶.
+    pub made: Vec<usize>,
 }
 
 impl TriangleMesh {
@@ -124,6 +126,7 @@ impl TriangleMesh {
             boundary: Vec::new(),
             size: Vec::new(),
             chord_error: Vec::new(),
+            made: Vec::new(),
         };
         for component in &patch.components {
             let size = match size {
@@ -175,7 +178,7 @@ impl TriangleMesh {
         }
         // The ring that encloses most is the outer one.
         rings.sort_by(|a, b| b.enclosed().total_cmp(&a.enclosed()));
-        let (region, chains) = best(&mut tracer, &rings, component.area, size)?;
+        let (region, chains, made) = best(&mut tracer, &rings, component.area, size)?;
         let (first, index) = (self.points.len(), self.size.len());
         let mut bodies = Evaluator::new(placement);
         let on_lower = region.points.iter().map(|p| Point3::new(p.x, p.y, bodies.lower_height(p.x, p.y)));
@@ -199,6 +202,7 @@ impl TriangleMesh {
         }
         self.size.push(size);
         self.chord_error.push(chord_error);
+        self.made.push(made);
         Ok(())
     }
 }
@@ -227,13 +231,13 @@ fn checked(component: &Component, size: f64) -> Result<f64> {
 }
 
 /// Meshes the region inside the rings until all angles are good, with shorter and shorter edges of the boundary. If no attempt
-/// succeeds, the result is the one with the largest smallest angle.
+/// succeeds, the result is the one with the largest smallest angle. The last value is what [`meshed`] has counted.
 fn best(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
     area: f64,
     size: f64,
-) -> Result<(MeshRegion, Vec<Vec<BoundaryNode>>)> {
+) -> Result<(MeshRegion, Vec<Vec<BoundaryNode>>, usize)> {
     let mut best: Option<(f64, MeshRegion, Vec<Vec<BoundaryNode>>)> = None;
     let mut made = 0;
     let wanted = RingSpacing::new(tracer, rings, EdgeLimits { size, chord_error: CHORD_SHARE * size });
@@ -248,7 +252,7 @@ fn best(
             break;
         }
     }
-    let found = best.map(|(_, region, chains)| (region, chains));
+    let found = best.map(|(_, region, chains)| (region, chains, made));
     found.ok_or_else(|| Error::new("mesh", "no angles", "a patch with an area", "take a larger approach"))
 }
 

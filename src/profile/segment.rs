@@ -25,19 +25,25 @@ pub struct Segment {
     pub shape: Shape,
 }
 
-/// Label of a segment that bridges what was not measured.
+/// First word of the label of a segment that bridges what was not measured.
 const GAP: &str = "gap";
 
 impl Segment {
     /// Tells whether the segment bridges what was not measured: a gap between points of a file, or a point off the curve. Its curve is
     /// no surface. It keeps the name through every motion and in files of segments.
     pub fn is_gap(&self) -> bool {
-        self.label == GAP
+        self.gap().is_some()
     }
 
-    /// Names the segment a bridge over what was not measured.
-    pub(crate) fn name_gap(&mut self) {
-        self.label = GAP.into();
+    /// Names the rows of the file that the segment bridges instead of showing a surface; empty where they are not known.
+    pub fn gap(&self) -> Option<&str> {
+        let rest = self.label.strip_prefix(GAP)?;
+        if rest.is_empty() { Some(rest) } else { rest.strip_prefix(": ") }
+    }
+
+    /// Names the segment a bridge over what was not measured, with its rows in the file.
+    pub(crate) fn name_gap(&mut self, rows: &str) {
+        self.label = format!("{GAP}: {rows}");
     }
 
     /// Makes a segment of a line or arc, without a label.

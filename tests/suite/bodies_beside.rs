@@ -33,20 +33,33 @@ fn complaint(text: &str, json: bool) -> Option<String> {
     }
 }
 
-/// A built-in pair with the wheel's origin up to 200 mm beside that of the rail, alone or in a wheelset with either roll.
+/// Distance of the offsets of built-in pairs \[mm\], from −200 to 200 mm.
+const APART: f64 = 7.3;
+
+/// A built-in pair with the wheel's origin up to 200 mm beside that of the rail, alone or in a wheelset with either roll: of all pairs,
+/// offsets and arrangements a campaign meets each once, and a short one a spread of them.
 fn built_in(number: u64) -> String {
+    /// A prime, so that all are met.
+    const STRIDE: usize = 104_729;
     let mut dice = Random::new(number);
     let rails: Vec<&str> = standards::rail_names().collect();
     let wheels: Vec<&str> = standards::wheel_names().collect();
-    let (rail, wheel) = (*dice.pick(&rails), *dice.pick(&wheels));
+    let offsets = (400.0 / APART) as usize + 1;
+    let mut rest = (number as usize).wrapping_mul(STRIDE) % (rails.len() * wheels.len() * offsets * 3);
+    let mut next = |count: usize| {
+        let own = rest % count;
+        rest /= count;
+        own
+    };
+    let (rail, wheel) = (rails[next(rails.len())], wheels[next(wheels.len())]);
+    let (offset, arrangement) = (APART * next(offsets) as f64 - 200.0, next(3));
     let inclination = *dice.pick(&["1:20", "1:40", "-1:40"]);
-    let offset = dice.between(-200.0, 200.0);
     let bodies = format!(
         "[rail]\nprofile = {rail:?}\nrotate = {inclination:?}\n[wheel]\nprofile = {wheel:?}\nradius = 460.0\n\
          [patch]\napproach = {:?}\n",
         10f64.powf(dice.between(-3.0, 0.0))
     );
-    let place = match dice.below(3) {
+    let place = match arrangement {
         0 => format!("[contact]\noffset = {offset:?}\n"),
         roll => format!(
             "[track]\nspacing = 1500.0\n[wheelset]\nspacing = 1500.0\nlateral = {offset:?}\nroll = {:?}\n",

@@ -63,47 +63,94 @@ fn measured(drawn: &Profile, side: Side, dice: &mut Random) -> Result<Profile> {
     Ok(profile("points.csv", points.as_bytes(), side, &options)?.profile)
 }
 
-/// A random pair under a random load, of five kinds: built-in, flanging with yaw, with a flat, drawn with kinks, measured.
-fn random(seed: u64) -> Result<Run> {
-    let mut dice = Random::stream(65, seed);
+/// A rail's nose: two flanks with a rounding between them.
+fn nose(dice: &mut Random) -> String {
+    let (radius, half) = (10f64.powf(dice.between(0.9, 2.0)), dice.between(1.5, 6.0));
+    let slope = |at: f64| at / (radius * radius - at * at).sqrt();
+    let half = half.min(0.6 * radius);
+    format!(
+        "rail = {{ start = [-18.0, 0.0], segments = [{{ line = {{ slope = {:?}, to_x = {:?} }} }}, \
+         {{ arc = {{ radius = {radius:?}, half = \"upper\", to_x = {half:?} }} }}, {{ line = {{ slope = {:?}, to_x = 18.0 }} }}] }}\n",
+        slope(half),
+        -half,
+        -slope(half)
+    )
+}
+
+/// Bodies of a kind that text describes: with a flat, with a nose, or of a wheelset that touches with tread and flange.
+fn described(kind: u64, dice: &mut Random) -> String {
     let [rail, wheel] = [dice.pick(&RAILS), dice.pick(&WHEELS)];
+    let cone = *dice.pick(&["cone-1:20", "cone-1:40"]);
+    let turned = format!("rail = {{ profile = {rail:?}, rotate = \"1:40\" }}\n");
+    match kind {
+        2 => {
+            let (length, edge) = (dice.between(10.0, 70.0), 10f64.powf(dice.between(-1.0, 1.8)));
+            let flat = format!("flat = {{ length = {length:?}, angle = 0.0, edge_radius = {edge:?} }}");
+            let offset = dice.between(-8.0, 10.0);
+            format!(
+                "{turned}wheel = {{ profile = \"S1002\", radius = 460.0, {flat} }}\ncontact = {{ offset = {offset:?} }}\n"
+            )
+        }
+        5 => {
+            let offset = dice.between(-2.0, 2.0);
+            let nose = nose(dice);
+            format!(
+                "{nose}wheel = {{ profile = {cone:?}, radius = 460.0 }}\ncontact = {{ offset = {offset:?} }}\n"
+            )
+        }
+        _ => {
+            let lateral = dice.between(4.0, 7.5);
+            format!(
+                "{turned}wheel = {{ profile = {wheel:?}, radius = 460.0 }}\ntrack = {{ gauge = 1435.0 }}\n\
+                 wheelset = {{ back_to_back = 1360.0, flange_back_x = -70.0, lateral = {lateral:?}, roll = \"neglect\" }}\n"
+            )
+        }
+    }
+}
+
+/// A random pair under a random load, of eight kinds: built-in, flanging with yaw, with a flat, drawn with kinks, measured, a nose, of a
+/// wheelset near its flange, and a thin flange whose wheel has a kink beside C. `more` are keys of its patch.
+fn random(seed: u64, more: &str) -> Result<Run> {
+    let mut dice = Random::stream(65, seed);
     let (load, radius) = (dice.between(10e3, 150e3), dice.between(300.0, 500.0));
+    let patch = format!("patch = {{ load = {load:?}{more} }}\n");
+    let [rail, wheel] = [dice.pick(&RAILS), dice.pick(&WHEELS)];
     let turned = standards::rail(rail)?.rotated(inclination(1.0, *dice.pick(&[20.0, 30.0, 40.0]))?);
-    let (place, pair) = match seed % 5 {
+    let (place, pair) = match seed % 8 {
         0 => (format!("offset = {}", dice.between(-8.0, 12.0)), (turned, standards::wheel(wheel)?)),
         1 => {
             let (offset, yaw) = (dice.between(-9.0, -3.0), dice.between(-0.02, 0.02));
-            (format!("offset = {offset}\nyaw = {yaw}"), (turned, standards::wheel("S1002")?))
-        }
-        2 => {
-            let (length, edge) = (dice.between(10.0, 70.0), dice.between(2.0, 60.0));
-            let offset = dice.between(-8.0, 10.0);
-            let text = format!(
-                "[rail]\nprofile = \"{rail}\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
-                 flat = {{ length = {length}, angle = 0.0, edge_radius = {edge} }}\n[contact]\noffset = {offset}\n\
-                 [patch]\nload = {load}\n"
-            );
-            return Run::new(scene::resolve(&parsed(&text)?, ".".as_ref(), "random")?, SILENT);
+            (format!("offset = {offset}, yaw = {yaw}"), (turned, standards::wheel("S1002")?))
         }
         3 => {
             let rail = if dice.below(2) == 0 { turned } else { kinked(&mut dice, -1.0)? };
             (format!("offset = {}", dice.between(-4.0, 4.0)), (rail, kinked(&mut dice, 1.0)?))
         }
-        _ => {
+        4 => {
             let rail = measured(&turned, Side::Rail, &mut dice)?;
             let wheel = measured(&standards::wheel("S1002")?, Side::Wheel, &mut dice)?;
             (format!("offset = {}", dice.between(-6.0, 6.0)), (rail, wheel))
         }
+        7 => {
+            let thin = standards::wheel(*dice.pick(&WHEELS[1..4]))?;
+            (format!("offset = {}", dice.between(0.0, 4.0)), (turned, thin))
+        }
+        kind => {
+            let text = patch + &described(kind, &mut dice);
+            return Run::new(scene::resolve(&parsed(&text)?, ".".as_ref(), "random")?, SILENT);
+        }
     };
     let text = format!(
-        "rail.profile = \"60E1\"\nwheel = {{ profile = \"S1002\", radius = {radius} }}\n[contact]\n{place}\n[patch]\nload = {load}\n"
+        "rail.profile = \"60E1\"\nwheel = {{ profile = \"S1002\", radius = {radius} }}\ncontact = {{ {place} }}\n{patch}"
     );
     let pair = Pair::new(pair.0, pair.1, radius)?;
     Run::new(scene::with_profiles(&parsed(&text)?, Profiles::drawn(pair), "random")?, SILENT)
 }
 
-/// Most cells of the finest solution.
-const MOST: f64 = 150e3;
+/// Most cells of the finest solution; of the few scenes of every run they are fewer.
+fn most_cells() -> f64 {
+    if campaign::scenes() > 20 { 150e3 } else { 60e3 }
+}
 
 /// The largest pressure of a part on cells up to 4 times finer than its own, and its difference from that on cells twice as wide.
 fn truth(part: &Part) -> Result<[f64; 2]> {
@@ -114,7 +161,7 @@ fn truth(part: &Part) -> Result<[f64; 2]> {
             Interval::new(from, from + width)
         };
         let count = [0, 1].map(|k| range(k).width() / found.cell[k]);
-        let finer = share * f64::min(4.0, (MOST / (count[0] * count[1])).sqrt());
+        let finer = share * f64::min(4.0, (most_cells() / (count[0] * count[1])).sqrt());
         let cells = Cells::over(
             &Window { xi: range(0), eta: range(1) },
             count.map(|n| (finer * n).max(8.0) as usize),
@@ -142,7 +189,7 @@ fn the_largest_pressure_holds_its_error_or_an_edge_is_named() {
     let (mut known, mut edges, mut refused, mut worst, mut failed) = (0, 0, 0, 0.0_f64, Vec::new());
     let mut errors = Vec::new();
     for seed in 0..campaign::scenes() {
-        let run = match random(seed) {
+        let run = match random(seed, "") {
             Ok(run) => run,
             // Chains of kinks may not touch, or be rough beyond reason.
             Err(error) => {
@@ -170,7 +217,7 @@ fn the_largest_pressure_holds_its_error_or_an_edge_is_named() {
                 println!("{seed}: {p} ± {error}: {fine} ± {rest}");
                 failed.push(format!(
                     "{seed} ({}): {p:.1} ± {error:.1}, on finer cells {fine:.1} ± {rest:.1}",
-                    seed % 5
+                    seed % 8
                 ));
             }
         }
@@ -188,26 +235,27 @@ fn the_largest_pressure_holds_its_error_or_an_edge_is_named() {
 }
 
 #[test]
-fn the_sum_of_the_pressures_over_a_grid_is_the_normal_force() -> Result<()> {
-    for text in [
-        "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n[contact]\noffset = 1.0\n",
-        "[rail]\nprofile = \"60E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"S1002\"\nradius = 460.0\n\
-         flat = { length = 50.0, angle = 0.0, edge_radius = 10.0 }\n[contact]\noffset = 1.0\n",
-        "[rail]\nprofile = \"54E5\"\nrotate = \"1:20\"\n[wheel]\nprofile = \"EN13715-S1002-h28-e28.5\"\nradius = 460.0\n[contact]\n\
-         offset = 1.553\n",
-        "[rail]\nprofile = \"49E1\"\nrotate = \"1:40\"\n[wheel]\nprofile = \"EN15302-A\"\nradius = 460.0\n[contact]\noffset = 3.23\n",
-    ] {
-        let text = format!("{text}[patch]\nload = 60e3\npressure = true\n");
-        let run = Run::new(scene::resolve(&parsed(&text)?, ".".as_ref(), "sum")?, SILENT)?;
+fn the_sum_of_the_pressures_over_a_grid_is_the_normal_force() {
+    // Their cells are many: a quarter as many as of the largest pressure.
+    let (mut worst, mut sums) = (0.0_f64, 0);
+    for seed in 0..campaign::scenes().div_ceil(4) {
+        // Flats in every run, and each of the other kinds in turn.
+        let seed = if seed == 0 { 2 } else { 7 * seed };
+        let Ok(run) = random(seed, ", pressure = true") else { continue };
         for part in &run.parts {
-            let (grid, found) = (&part.site.grid, part.analysis.pressure.as_ref().expect("pressures"));
+            let Some(found) = &part.analysis.pressure else { continue };
+            let grid = &part.site.grid;
             let cell = (grid.xi[1] - grid.xi[0]) * (grid.eta[1] - grid.eta[0]);
             let sum = cell * found.field.as_ref().expect("a field").iter().sum::<f64>();
-            let miss = sum / part.site.normal_load.expect("a load") - 1.0;
-            assert!(miss.abs() < 5e-3, "{text}: {miss:.4}");
+            let Some(load) = part.site.normal_load else { continue };
+            let miss = sum / load - 1.0;
+            assert!(miss.abs() < 5e-3, "{seed} ({}): {miss:.4}", seed % 8);
+            worst = worst.max(miss.abs());
+            sums += 1;
         }
     }
-    Ok(())
+    println!("{sums} sums, off by at most {:.2} %", 100.0 * worst);
+    assert!(sums > 2, "{sums}");
 }
 
 #[test]

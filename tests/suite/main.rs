@@ -67,6 +67,7 @@ mod triangles;
 mod turned_wheels;
 mod two_sides;
 mod unequal_wheels;
+mod unmeasured_contacts;
 mod varying_normals;
 mod vtk_files;
 mod wrong_scenes;

@@ -36,6 +36,7 @@ fn triangles() -> PatchMesh {
         boundary: vec![BoundaryChain { component: 0, nodes: vec![0, 1, 2, 3], angles: vec![1.5; 4] }],
         size: vec![2.0],
         chord_error: vec![0.01],
+        made: vec![0],
         points: corners(),
     };
     PatchMesh {

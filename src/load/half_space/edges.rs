@@ -1,4 +1,4 @@
-//! Edges in a contact: kinks and steps of s at which the elastic pressure has no bound.
+//! Edges in a contact: kinks and steps of s at which the elastic pressure has no bound, and roundings that cells do not show.
 
 use std::f64::consts::{LN_2, PI};
 
@@ -13,7 +13,7 @@ const LINES: usize = 5;
 /// Most parts into which a line is divided; each is halved as long as s turns enough in it.
 const PARTS: usize = 64;
 
-/// Width \[mm\] in which s turns at an edge. A rounding of the edge with this radius or more is seen as one.
+/// Width \[mm\] in which s turns at a sharp edge. One that turns over more is rounded.
 const SHARP: f64 = 1e-6;
 
 /// Least step of s \[mm\] at which a surface ends. Gaps between segments are a thousand times smaller.
@@ -22,6 +22,9 @@ const STEP: f64 = 1e-4;
 /// ln 1000. An edge counts if its pressure passes the largest one on cells of a thousandth of the sides: smaller ones are no
 /// continuum.
 const FINEST: f64 = 6.9;
+
+/// Most e-folds of a rounded edge: just fewer than of a sharp one.
+const ROUNDED: f64 = 0.99 * FINEST;
 
 /// How much an edge raises the largest pressure, relative, before it counts: that is the error of the cells.
 const RISE: f64 = 0.01;
@@ -38,24 +41,31 @@ pub struct SharpEdge {
     pub kink: f64,
     /// Rise of its pressure where cells are half as wide \[N/mm²\].
     pub rise_n_per_mm2: f64,
+    /// By how much its pressure passes the largest one on the cells \[N/mm²\]: as far as cells a thousandth as wide show it, or as its
+    /// rounding bounds it.
+    pub beyond_n_per_mm2: f64,
+    /// Whether it is rounded, so that its pressure has a bound.
+    pub rounded: bool,
 }
 
-/// An edge on a line of cells: its place \[mm\], the change of slope, and p/(π E*) on cells of a thousandth and of half the sides less that
-/// of the cells.
+/// An edge on a line of cells: its place \[mm\], the change of slope, whether it is rounded, p/(π E*) that it reaches, and that on cells of
+/// half the sides less that of the cells.
 #[derive(Debug, Clone, Copy)]
 struct OnLine {
     t: f64,
     kink: f64,
+    rounded: bool,
     reached: f64,
     rise: f64,
 }
 
-/// Finds the edge in the contact whose pressure passes all others on fine cells: there is then no largest pressure. `None` where the
-/// largest pressure has a bound.
+/// Finds the edge in the contact whose pressure passes all others on fine cells: where it is sharp, there is no largest pressure. One that
+/// is rounded counts if none is sharp. `None` where cells show all edges.
 ///
 /// Method: on a line across an edge at which the slope of s rises by Δ, p grows by E* Δ/2π wherever cells are e times smaller, since
-/// that of a plane wedge is E* Δ/2π ln(1/ξ). Where the slope rises, the line is halved until the rest is 1e-6 mm wide. Where a surface
-/// ends beside cells whose pressures rise towards it, p grows with the root, as under a punch.
+/// that of a plane wedge is E* Δ/2π ln(1/ξ). Where the slope rises, the line is halved until the rest is 1e-6 mm wide; if the slope turns
+/// over more, p grows until cells are as wide as the part in which that counts most. Where a surface ends beside cells whose pressures rise
+/// towards it, p grows with the root, as under a punch.
 /// Cost: 1000 values of s. An edge that meets none of five lines across the contact along either axis is missed.
 pub fn sharp_edge(pressures: &Pressures, placement: &Placement) -> Option<SharpEdge> {
     let on = OnLines(pressures);
@@ -72,13 +82,14 @@ pub fn sharp_edge(pressures: &Pressures, placement: &Placement) -> Option<SharpE
                 [s, gradient[axis]]
             };
             let found = on.kinks(axis, line, most, &mut gap).into_iter();
-            for OnLine { t, kink, reached, rise } in found.chain(on.steps(axis, line, &mut gap)) {
-                let passes = reached > worst.map_or((1.0 + RISE) * most, |(passed, _)| passed);
-                if passes {
-                    worst = Some((
-                        reached,
-                        SharpEdge { at_mm: point(t), kink, rise_n_per_mm2: rise * pressures.unit },
-                    ));
+            for OnLine { t, kink, rounded, reached, rise } in found.chain(on.steps(axis, line, &mut gap)) {
+                let order = |rounded: bool, reached: f64| (!rounded, reached);
+                let passed = worst.map_or((false, 0.0), |(reached, edge)| order(edge.rounded, reached));
+                if reached > (1.0 + RISE) * most && order(rounded, reached) > passed {
+                    let [rise_n_per_mm2, beyond_n_per_mm2] =
+                        [rise, reached - most].map(|p| p * pressures.unit);
+                    let edge = SharpEdge { at_mm: point(t), kink, rise_n_per_mm2, beyond_n_per_mm2, rounded };
+                    worst = Some((reached, edge));
                 }
             }
         }
@@ -116,9 +127,10 @@ impl OnLines<'_> {
             let here = part.ends().map(|t| self.on_line(axis, line, cell(t))).into_iter().fold(0.0, f64::max);
             let least = ((1.0 + RISE) * most - here) / (FINEST * GROWTH);
             if here > 0.0 {
-                out.extend(kink(gap, part, [from, to], least).map(|(t, kink)| {
-                    let reached = here + FINEST * GROWTH * kink;
-                    OnLine { t, kink, reached, rise: LN_2 * GROWTH * kink }
+                let side = self.0.cells.step[axis];
+                out.extend(kink(gap, part, [from, to], (least, side)).map(|Turn { t, kink, folds }| {
+                    let reached = here + folds * GROWTH * kink;
+                    OnLine { t, kink, rounded: folds < FINEST, reached, rise: LN_2 * GROWTH * kink }
                 }));
             }
             from = to;
@@ -137,7 +149,8 @@ impl OnLines<'_> {
             let t = (pressure > self.on_line(axis, line, before))
                 .then(|| surface_end(gap, [t, t + outwards * step]))??;
             let root = |finer: f64| pressure * finer.sqrt();
-            Some(OnLine { t, kink: f64::INFINITY, reached: root(FINEST.exp()), rise: root(2.0) - pressure })
+            let (reached, rise) = (root(FINEST.exp()), root(2.0) - pressure);
+            Some(OnLine { t, kink: f64::INFINITY, rounded: false, reached, rise })
         });
         found.collect()
     }
@@ -161,25 +174,39 @@ impl OnLines<'_> {
     }
 }
 
-/// Finds the place in a part of a line \[mm\] at which a slope rises at once by at least `least`, with its rise there; `slopes` are those
-/// at both ends. Of several such places it is the one in the halves that rise most.
+/// A turn of s: its place \[mm\], the change of slope, and the e-folds by which cells may shrink until they show it.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    t: f64,
+    kink: f64,
+    folds: f64,
+}
+
+/// Finds where in a part of a line \[mm\] a slope rises most for the width of it, by at least `least`; `slopes` are those at both ends, and
+/// `side` is that of a cell \[mm\]. Of several such places it is the one in the halves that rise most.
 fn kink(
     gap: &mut impl FnMut(f64) -> [f64; 2],
     mut part: Interval,
     mut slopes: [f64; 2],
-    least: f64,
-) -> Option<(f64, f64)> {
+    (least, side): (f64, f64),
+) -> Option<Turn> {
+    let mut most: Option<Turn> = None;
     while slopes[1] - slopes[0] >= least {
-        let middle = part.low + 0.5 * part.width();
-        if part.width() <= SHARP || middle <= part.low || middle >= part.high {
-            return Some((middle, slopes[1] - slopes[0]));
+        let (middle, kink) = (part.low + 0.5 * part.width(), slopes[1] - slopes[0]);
+        let sharp = part.width() <= SHARP || middle <= part.low || middle >= part.high;
+        let folds = if sharp { FINEST } else { (side / part.width()).ln().clamp(0.0, ROUNDED) };
+        if most.is_none_or(|turn| folds * kink >= turn.folds * turn.kink) {
+            most = Some(Turn { t: middle, kink, folds });
+        }
+        if sharp {
+            break;
         }
         let [_, here] = gap(middle);
         let left = here - slopes[0] >= slopes[1] - here;
         *(if left { &mut part.high } else { &mut part.low }) = middle;
         slopes[usize::from(left)] = here;
     }
-    None
+    most
 }
 
 /// Finds the place between two of a line \[mm\] at which s steps or ends; the first one has a surface.

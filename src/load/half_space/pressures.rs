@@ -7,9 +7,9 @@ use super::cells::Cells;
 /// Relative error of the largest pressure per violation of contact's conditions relative to δ; up to 4 was seen on ellipses.
 const UNSETTLED: f64 = 5.0;
 
-/// Error of the pressure per slope of s that cells leave out, as a share of E*: of the fourth difference of s over the side of a cell. It
-/// is half of the largest seen where the curvature of s jumps on cells of 1/16 of the contact.
-const ROUGH: f64 = 0.05;
+/// Error of the pressure per turn of s between cells, as a share of E*: its growth wherever cells are e times smaller, so that a turn over a
+/// third of a cell counts in full. It is 1/2π.
+const ROUGH: f64 = 0.159;
 
 /// Rise of the largest pressure by what cells do not show, relative, from which on they are too wide along that axis.
 const MUCH: f64 = 0.01;
@@ -143,20 +143,21 @@ impl Pressures {
     }
 
     /// Estimates by how much the pressure may pass the largest one \[N/mm²\] where neighbouring cells along ξ and along η do not follow each
-    /// other smoothly: a fourth difference of s means a turn between cells, of a short arc or of a jump of curvature.
+    /// other smoothly: the sum of two neighbouring fourth differences of s over the side of a cell is the turn between them, of a short arc
+    /// or of a jump of curvature, wherever it lies between their middles. One of them alone may be a quarter of it.
     fn hidden(&self) -> [f64; 2] {
         let [columns, rows] = self.cells.count;
         let turn = |at: usize, stride: usize| {
-            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k| self.depth[at + k * stride - 2 * stride]);
-            let known = [a, b, c, d, e].iter().all(|depth| *depth > 0.0);
-            known.then(|| (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs())
+            let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|k| self.depth[at + k * stride - 2 * stride]);
+            let known = [a, b, c, d, e, f].iter().all(|depth| *depth > 0.0);
+            known.then(|| (a - 3.0 * b + 2.0 * (c + d) - 3.0 * e + f).abs())
         };
         let largest = self.relative.iter().fold(0.0, |most: f64, p| most.max(*p));
         let mut most = [largest; 2];
         for at in (0..self.relative.len()).filter(|&at| self.relative[at] > 0.0) {
             let axes = [(at / rows, columns, rows), (at % rows, rows, 1)];
             for (k, (place, count, stride)) in axes.into_iter().enumerate() {
-                let inside = place >= 2 && place + 2 < count;
+                let inside = place >= 2 && place + 3 < count;
                 let turn = inside.then(|| turn(at, stride)).flatten();
                 // A smooth contact ends before the overlap, and carries little there.
                 let here = self.relative[at];

@@ -1,7 +1,7 @@
 //! Names the segments of a curve that bridge what was not measured.
 
 use super::checks::{Check, Finding, distance};
-use super::runs::Path;
+use super::runs::{BadRun, Path};
 use crate::measured::read::points::Point;
 use crate::profile::Segment;
 
@@ -14,20 +14,26 @@ const LOOKED_ON: usize = 1000;
 /// Names the segments over the gaps that were found between points, and those from points off the curve to their neighbours. Points
 /// and segments are from left to right.
 pub(in crate::measured) fn name(segments: &mut [Segment], points: &[Point], findings: &[Finding]) {
-    let gaps: Vec<&str> =
-        findings.iter().filter(|found| found.check == Check::Gap).map(|found| found.place.as_str()).collect();
-    let before_gap = |k: &usize| !gaps.is_empty() && gaps.contains(&points[*k].place().as_str());
-    let off = Path::of(points).runs.into_iter().flat_map(|run| run.from.saturating_sub(1)..=run.to);
-    let mut all: Vec<usize> = (0..points.len()).filter(before_gap).chain(off).collect();
-    all.sort_unstable();
+    let gaps: Vec<&Finding> = findings.iter().filter(|found| found.check == Check::Gap).collect();
+    let of_gap = |k: usize| {
+        let place = if gaps.is_empty() { String::new() } else { points[k].place() };
+        gaps.iter().find(|gap| gap.place == place).map(|gap| (k, format!("after {}", gap.place)))
+    };
+    let of_run = |run: &BadRun| {
+        let rows = run.rows(points);
+        (run.from.saturating_sub(1)..=run.to).map(move |k| (k, rows.clone()))
+    };
+    let mut all: Vec<(usize, String)> = (0..points.len()).filter_map(of_gap).collect();
+    all.extend(Path::of(points).runs.iter().flat_map(of_run));
+    all.sort_by_key(|(k, _)| *k);
     let mut from = 0;
-    for pair in all.into_iter().filter_map(|k| points.get(k..k + 2)) {
+    for (pair, rows) in all.iter().filter_map(|(k, rows)| Some((points.get(*k..k + 2)?, rows))) {
         let between = |share: f64, a: f64, b: f64| a + share * (b - a);
         let length = distance(&pair[0], &pair[1]);
         for share in PLACES {
             let at = [between(share, pair[0].x, pair[1].x), between(share, pair[0].z, pair[1].z)];
             if let Some(k) = nearest(segments, from, at, length) {
-                segments[k].name_gap();
+                segments[k].name_gap(rows);
                 from = k;
             }
         }

@@ -99,21 +99,24 @@ impl Path {
 
 impl BadRun {
     pub(super) fn finding(&self, points: &[Point]) -> Finding {
-        let (first, last) = (&points[self.from], &points[self.to]);
+        let first = &points[self.from];
         let found = match self.to - self.from {
             0 => format!("a point {} off the line of its neighbours", self.how_far()),
-            more => {
-                let [first, last] = if first.number < last.number { [first, last] } else { [last, first] };
-                format!(
-                    "{} points in a row, {} to {}, up to {} off the curve of their neighbours",
-                    more + 1,
-                    first.place(),
-                    last.place(),
-                    self.how_far()
-                )
-            }
+            more => format!(
+                "{} points in a row, {}, up to {} off the curve of their neighbours",
+                more + 1,
+                self.rows(points),
+                self.how_far()
+            ),
         };
         Finding { fatal: self.is_no_surface(points), ..Finding::new(Check::Spike, first, found) }
+    }
+
+    /// Names the first and the last of its points in the order of the file.
+    pub(super) fn rows(&self, points: &[Point]) -> String {
+        let (first, last) = (&points[self.from], &points[self.to]);
+        let [first, last] = if first.number < last.number { [first, last] } else { [last, first] };
+        if self.to > self.from { format!("{} to {}", first.place(), last.place()) } else { first.place() }
     }
 
     fn how_far(&self) -> String {

@@ -204,6 +204,13 @@ impl Section {
         let (station, parameter) = match (&branch.shape, &profile.segments()[branch.segment].shape) {
             (BranchShape::Polynomial(shape), Shape::Polynomial(polynomial)) => {
                 let t = shape.exact_parameters(&[x], &[shape.parameter(x)])[0];
+                // Neighbours round their joint differently: x may lie a rounding beyond the end of its segment.
+                let [low, high] = polynomial.t.ends();
+                let t = match t {
+                    t if f64::from(t - low) < 0.0 => low.into(),
+                    t if f64::from(t - high) > 0.0 => high.into(),
+                    t => t,
+                };
                 (turned::station_at(polynomial, t), t)
             }
             _ => (branch.station(x), Twice::ZERO),
