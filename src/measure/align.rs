@@ -3,18 +3,20 @@
 use serde::Serialize;
 
 use super::curve::{CurvePoint, MarkedCurve};
-use super::fit::{FITS, FittedMotion, NominalFit};
+use super::fit::{FITS, FittedMotion, NominalFit, is_same};
 use super::nominal::{Back, Nominal, back_of, from_tip, is_from_back, own_back};
 use super::options::{Align, MeasureOptions};
 use super::quantity::in_micrometres;
 use crate::numerics::interval::Interval;
-use crate::profile::{Side, Station};
+use crate::profile::{Profile, Side, Station, standards};
 
 /// Share of the parts over which places have to be found; for parts of both sides, of which one may be measured alone.
 const LEAST_PART: f64 = 0.5;
 const LEAST_OF_BOTH: f64 = 0.25;
 /// Distance of marks \[mm\] of curves that are fitted.
 const STEP: f64 = 0.25;
+/// That of a measured web \[mm\]: it is longer, and is fitted from many starts.
+const WEB_STEP: f64 = 1.0;
 /// Sine of 60°.
 const SIXTY: f64 = 0.866_025_403_784_438_6;
 /// Ends \[mm\] of the outer tread, from where the nominal tread ends at its chamfer: 10 mm, as the MiniProf's own alignment has it.
@@ -30,6 +32,9 @@ const LARGEST_RESIDUAL: f64 = 0.1;
 /// Least length \[mm\] of what fits: a shorter base leaves a turn by 0.05 mm over it, which are 0.4 mm at the other end of a wheel. A best
 /// fit that turns the profile by more than an instrument needs a third of the profile.
 const LEAST_BASE: f64 = 20.0;
+
+/// Share of what is measured of fitted parts that has to fit: at the ends of parts, places belong to what lies beside them.
+const NEARLY_ALL: f64 = 0.9;
 
 /// Turn \[deg\] by which instruments are put on at most; beside it rails lie inclined.
 const MOST_TURNED: f64 = 0.3;
@@ -181,7 +186,9 @@ fn fitted(
     align: Align,
     options: &MeasureOptions,
 ) -> Result<Aligned, String> {
-    let (measured, onto) = (curve.thinned(STEP), MarkedCurve::drawn(nominal.profile, STEP));
+    let most = align == Align::Web;
+    let apart = if most { WEB_STEP } else { STEP };
+    let (measured, onto) = (curve.thinned(apart), onto(nominal.profile, align, STEP));
     let work = measured.marks.len().saturating_mul(onto.marks.len());
     if work > MOST_WORK {
         return Err(format!(
@@ -189,10 +196,9 @@ fn fitted(
         ));
     }
     let (parts, what) = parts(&onto, side, align, options);
-    let least_part = if align == Align::Web { LEAST_OF_BOTH } else { LEAST_PART };
+    let least_part = if most { LEAST_OF_BOTH } else { LEAST_PART };
     let fit = NominalFit { measured: &measured, nominal: &onto, parts: &parts, least_part };
-    let all: Vec<Result<FittedMotion, String>> =
-        starts(&measured, &onto, side).into_iter().map(|start| fit.of_parts(start)).collect();
+    let all = by_parts(&fit, side, most);
     let best = all.iter().flatten().min_by(|a, b| a.rms.total_cmp(&b.rms)).copied();
     let none = || all.iter().find_map(|found| found.as_ref().err().cloned()).unwrap_or_default();
     let of_parts = best.ok_or_else(|| format!("no alignment by {what}: {}", none()))?;
@@ -204,13 +210,13 @@ fn fitted(
     } else {
         (of_parts, what)
     };
-    let FittedMotion { motion, rms, length } = found;
+    let FittedMotion { motion, rms, length, .. } = found;
     let turn = motion.angle().to_degrees();
     let is_turned = align == Align::BestFit && turned(turn, side).is_some();
     let least = if is_turned { (measured.lengths().sum::<f64>() / 3.0).max(LEAST_BASE) } else { LEAST_BASE };
     let refused = refused(of_parts, found, least);
     let parts_fit = of_parts.rms <= LARGEST_RESIDUAL;
-    let doubt = refused.clone().or_else(|| turned(turn, side));
+    let doubt = refused.clone().or_else(|| most.then(|| off(found)).flatten()).or_else(|| turned(turn, side));
     let [x, z, by_turn] = [motion.x, motion.z, turn].map(in_micrometres);
     let text = format!("{by}, over {length:.0} mm; moved by ({x}, {z}) mm, turned by {by_turn} deg");
     let alignment = Alignment { align, text, residual: Some(rms), doubt };
@@ -227,14 +233,40 @@ fn fitted(
     })
 }
 
-/// Fits a curve to another by the parts that wear spares, then by all that fits, from all starts; returns what fits over the greatest
-/// length.
-pub(super) fn consensus(measured: &MarkedCurve, onto: &MarkedCurve, side: Side) -> Option<FittedMotion> {
-    let (parts, _) = parts(onto, side, Align::BestFit, &MeasureOptions::default());
+/// Returns what a curve is fitted to: the nominal, with the web of a built-in rail where that is wanted.
+pub(super) fn onto(nominal: &Profile, align: Align, step: f64) -> MarkedCurve {
+    let whole = (align == Align::Web).then(|| standards::with_web(nominal)).flatten();
+    MarkedCurve::drawn(whole.as_ref().unwrap_or(nominal), step)
+}
+
+/// Fits a curve to another by the parts that wear spares, or by the web, then by all that fits, from all starts; returns what fits over
+/// the greatest length.
+pub(super) fn consensus(
+    measured: &MarkedCurve,
+    onto: &MarkedCurve,
+    side: Side,
+    align: Align,
+) -> Option<FittedMotion> {
+    let most = align == Align::Web;
+    let by = if most { align } else { Align::BestFit };
+    let (parts, _) = parts(onto, side, by, &MeasureOptions::default());
     let fit = NominalFit { measured, nominal: onto, parts: &parts, least_part: LEAST_OF_BOTH };
-    let all = starts(measured, onto, side).into_iter();
-    let fits = all.filter_map(|start| fit.of_all(fit.of_parts(start).ok()?, 0.5 * FITS.high).ok());
+    let all = by_parts(&fit, side, most).into_iter().flatten();
+    let fits = all.filter_map(|by_parts| fit.of_all(by_parts, 0.5 * FITS.high).ok());
     fits.max_by(|a, b| a.length.total_cmp(&b.length))
+}
+
+/// Fits a curve by parts from all first guesses; if some of the parts may be off the nominal, by `most` of them.
+fn by_parts(fit: &NominalFit, side: Side, most: bool) -> Vec<Result<FittedMotion, String>> {
+    let mut all: Vec<Result<FittedMotion, String>> = Vec::new();
+    for start in starts(fit.measured, fit.nominal, side) {
+        let found = fit.of_parts(start);
+        let known = found.as_ref().is_ok_and(|found| all.iter().flatten().any(|of| is_same(of, found)));
+        if !known {
+            all.push(found);
+        }
+    }
+    if most { all.into_iter().map(|found| fit.of_most(found?)).collect() } else { all }
 }
 
 /// Tells why a fit gives no wear: its parts are off the nominal, or its base is shorter than `least` \[mm\].
@@ -250,6 +282,17 @@ fn refused(of_parts: FittedMotion, found: FittedMotion, least: f64) -> Option<St
         format!(
             "alignment by a turn of {turn:.3} deg over a base of {:.1} mm, less than {least:.0}, with a residual of {:.3} mm: worn, or another nominal",
             found.length, found.rms
+        )
+    })
+}
+
+/// Doubts a fit from which a tenth or more of its parts is off.
+fn off(found: FittedMotion) -> Option<String> {
+    let FittedMotion { length, near, rms, .. } = found;
+    (length < NEARLY_ALL * near).then(|| {
+        format!(
+            "alignment by {length:.0} mm of {near:.0} mm that are measured, with a residual of {rms:.3} mm: the rest is off the \
+             nominal, dirty, damaged, or another nominal"
         )
     })
 }

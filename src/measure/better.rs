@@ -1,9 +1,10 @@
 //! Finds the built-in profiles that fit a measured one better than its nominal does, or as well.
 
-use super::align::consensus;
+use super::align::{consensus, onto};
 use super::curve::MarkedCurve;
 use super::fit::FittedMotion;
 use super::nominal::Nominal;
+use super::options::Align;
 use crate::profile::{Profile, Side, Station, standards};
 
 /// Distance of marks \[mm\]: built-in profiles differ by more over whole roundings.
@@ -35,10 +36,10 @@ pub(super) struct Rivals {
 }
 
 /// Finds the built-in profiles that fit over as great a length as the nominal or more; `None` if the nominal fits nearly all.
-pub(super) fn rivals(nominal: &Nominal, curve: &MarkedCurve, side: Side) -> Option<Rivals> {
+pub(super) fn rivals(nominal: &Nominal, curve: &MarkedCurve, side: Side, align: Align) -> Option<Rivals> {
     let curve = curve.thinned(STEP);
     let length: f64 = curve.lengths().sum();
-    let of = |profile: &Profile| consensus(&curve, &MarkedCurve::drawn(profile, STEP), side);
+    let of = |profile: &Profile| consensus(&curve, &onto(profile, align, STEP), side, align);
     let own = of(nominal.profile);
     let fits = own.map_or(0.0, |own| own.length);
     if fits >= ALL * length {

@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::curve::MarkedCurve;
+use super::smooth::quantile;
 use crate::numerics::interval::Interval;
-use crate::profile::{Mark, Station, beside};
+use crate::profile::{Beside, Mark, Station, beside};
 
 /// Farthest distance \[mm\] of a place that belongs to a part of the nominal. It is more than a start is off, and less than the
 /// distance of another part of the profile.
@@ -22,6 +23,17 @@ const MOST_PASSES: usize = 200;
 const SETTLED: f64 = 1e-6;
 /// Smallest and largest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
 pub(super) const FITS: Interval = Interval::new(0.005, 0.1);
+/// Number of windows of half of the places from which the fit of most of them starts.
+const WINDOWS: usize = 11;
+/// Share of the places that have to fit, whose largest distance is the scale of a fit of most of them; and the distance in scales at
+/// which a place loses its weight: two deviations of noise if all places fit, five if half of them do.
+const FITTING: f64 = 0.4;
+const LOST_AT: f64 = 4.0;
+/// Share of the last scale from which on a scale has settled, and most scales.
+const SETTLES: f64 = 0.99;
+const MOST_SCALES: usize = 20;
+/// What parts that do not hold the profile are told of.
+const FREE: &str = "what is measured of it leaves the profile free to move";
 /// Motion \[mm\] below which the places that belong to a part stay chosen, a tenth of the instrument's resolution: at a part's end
 /// a place may belong to it after one pass and not after the next, for ever.
 const CHOSEN: f64 = 1e-3;
@@ -44,6 +56,8 @@ pub(super) struct FittedMotion {
     pub rms: f64,
     /// Length of the measured curve that is fitted \[mm\].
     pub length: f64,
+    /// Length of what is measured near the parts \[mm\].
+    pub near: f64,
 }
 
 /// A place of the measured curve beside its foot on the nominal one.
@@ -67,12 +81,66 @@ impl NominalFit<'_> {
         if own == 0.0 {
             return Err("the nominal has none of it: give one that has, or another alignment".into());
         }
-        let near = |foot: usize, across: f64| self.parts[foot] && across.abs() <= FARTHEST;
-        let fitted = self.settled(start, near, f64::INFINITY)?;
-        if fitted.length < self.least_part * own {
-            return Err(format!("{:.1} mm of its {own:.1} mm are measured", fitted.length.min(own)));
+        let all = self.settled(start, self.near_parts(), f64::INFINITY)?;
+        if all.near < self.least_part * own {
+            return Err(format!("{:.1} mm of its {own:.1} mm are measured", all.near.min(own)));
         }
-        Ok(fitted)
+        Ok(all)
+    }
+
+    /// Finds the motion from which half of the places near the parts are off the least: the others may be off as far as they like.
+    ///
+    /// Method: Tukey's biweight with the scale of the median distance, from all places and from windows of half of them, of which one
+    /// may be free of others.
+    ///
+    /// # Errors
+    /// Places that leave a motion free.
+    pub fn of_most(&self, all: FittedMotion) -> Result<FittedMotion, String> {
+        let near = self.near_parts();
+        // All its motions lie near the first one, and their feet beside its feet.
+        let mut feet = Vec::new();
+        let own = self.pairs(&all.motion, &mut feet, &near, None, f64::INFINITY);
+        let half = own.len() / 2;
+        let windows = (0..WINDOWS).map(|k| k * (own.len() - half) / (WINDOWS - 1));
+        let windows =
+            windows.filter_map(|from| Some([own.get(from)?.measured, own.get(from + half)?.measured]));
+        let of_window = |[from, to]: [usize; 2]| {
+            let inside = |k: usize, foot: &Beside| (from..=to).contains(&k) && near(k, foot);
+            self.settled_from(all.motion, feet.clone(), inside, f64::INFINITY)
+        };
+        let starts = [Ok(all)].into_iter().chain(windows.map(of_window));
+        let best = starts.flatten().filter_map(|start| self.of_half(start, &feet, &near).ok());
+        let best = best.min_by(|a, b| a.1.total_cmp(&b.1));
+        best.map(|(found, _)| found).ok_or_else(|| FREE.to_owned())
+    }
+
+    /// Tells which places belong to the parts.
+    fn near_parts(&self) -> impl Fn(usize, &Beside) -> bool {
+        |_, foot| self.parts[foot.mark] && foot.across.abs() <= FARTHEST
+    }
+
+    /// Fits by the biweight until the median distance \[mm\] of the places near the parts, which is its scale, stays.
+    fn of_half(
+        &self,
+        start: FittedMotion,
+        feet: &[usize],
+        near: &impl Fn(usize, &Beside) -> bool,
+    ) -> Result<(FittedMotion, f64), String> {
+        let scale = |of: &FittedMotion| {
+            let pairs = self.pairs(&of.motion, &mut feet.to_vec(), near, None, f64::INFINITY);
+            quantile(pairs.iter().map(|pair| pair.across.abs()).collect(), FITTING)
+        };
+        let (mut found, mut last) = (start, f64::INFINITY);
+        for _ in 0..MOST_SCALES {
+            let own = scale(&found);
+            if own >= SETTLES * last {
+                break;
+            }
+            last = own;
+            let fits = (LOST_AT * own).max(FITS.low);
+            found = self.settled_from(found.motion, feet.to_vec(), near, fits)?;
+        }
+        Ok((found, last))
     }
 
     /// Finds the motion that fits all places near the nominal, from the motion that fits the parts, by Tukey's biweight: a place
@@ -81,24 +149,35 @@ impl NominalFit<'_> {
     /// # Errors
     /// Places that leave a motion free, or at which the fit does not settle; the text says which.
     pub fn of_all(&self, of_parts: FittedMotion, fits: f64) -> Result<FittedMotion, String> {
-        self.settled(of_parts.motion, |_, across| across.abs() <= FARTHEST, fits)
+        self.settled(of_parts.motion, |_, foot| foot.across.abs() <= FARTHEST, fits)
     }
 
-    /// Repeats Gauss and Newton's step until the motion is settled. A place belongs by its foot and its distance; it weighs nothing
-    /// from `fits` \[mm\] on.
+    /// Settles a motion, as [`Self::settled_from`] does; its first feet are sought over all marks.
     fn settled(
         &self,
         start: Station,
-        belongs: impl Fn(usize, f64) -> bool,
+        belongs: impl Fn(usize, &Beside) -> bool,
         fits: f64,
     ) -> Result<FittedMotion, String> {
-        let (mut motion, mut feet) = (start, Vec::new());
+        self.settled_from(start, Vec::new(), belongs, fits)
+    }
+
+    /// Repeats Gauss and Newton's step until the motion is settled. A place belongs by its mark and its foot; it weighs nothing
+    /// from `fits` \[mm\] on.
+    fn settled_from(
+        &self,
+        start: Station,
+        mut feet: Vec<usize>,
+        belongs: impl Fn(usize, &Beside) -> bool,
+        fits: f64,
+    ) -> Result<FittedMotion, String> {
+        let mut motion = start;
         let mut chosen: Option<Vec<bool>> = None;
         let mut last = f64::INFINITY;
         for pass in 0..MOST_PASSES {
             let pairs = self.pairs(&motion, &mut feet, &belongs, chosen.as_deref(), fits);
             let Some(step) = step(&pairs) else {
-                return Err("what is measured of it leaves the profile free to move".into());
+                return Err(FREE.into());
             };
             let next = motion.placed_by(&step);
             let moved = apart(&motion, &next);
@@ -114,8 +193,8 @@ impl NominalFit<'_> {
                 let sum = |of: fn(&PointAndFoot) -> f64| pairs.iter().map(of).sum::<f64>();
                 let squares = sum(|pair| pair.weight * pair.across * pair.across);
                 let rms = (squares / sum(|pair| pair.weight)).sqrt();
-                let near = pairs.iter().filter(|pair| pair.weight > 0.0);
-                return Ok(FittedMotion { motion, rms, length: near.map(|pair| pair.length).sum() });
+                let length = sum(|pair| if pair.weight > 0.0 { pair.length } else { 0.0 });
+                return Ok(FittedMotion { motion, rms, length, near: sum(|pair| pair.length) });
             }
         }
         Err(format!(
@@ -129,7 +208,7 @@ impl NominalFit<'_> {
         &self,
         motion: &Station,
         feet: &mut Vec<usize>,
-        belongs: impl Fn(usize, f64) -> bool,
+        belongs: impl Fn(usize, &Beside) -> bool,
         chosen: Option<&[bool]>,
         fits: f64,
     ) -> Vec<PointAndFoot> {
@@ -148,7 +227,7 @@ impl NominalFit<'_> {
             let inside = foot.mark > 0 && foot.mark + 1 < nominal.len();
             let chosen = match chosen {
                 Some(chosen) => chosen[k],
-                None => inside && along >= ALONG && belongs(foot.mark, foot.across),
+                None => inside && along >= ALONG && belongs(k, &foot),
             };
             if chosen {
                 let at = [station.x, station.z];
@@ -191,6 +270,11 @@ fn step(pairs: &[PointAndFoot]) -> Option<Station> {
     let (sin, cos) = (motion[2] / ARM).sin_cos();
     let [x, z] = centre;
     Some(Station { x: x + motion[0] - (x * cos - z * sin), z: z + motion[1] - (x * sin + z * cos), cos, sin })
+}
+
+/// Returns whether two motions are one, within what decides which places belong.
+pub(super) fn is_same(a: &FittedMotion, b: &FittedMotion) -> bool {
+    apart(&a.motion, &b.motion) < CHOSEN
 }
 
 /// Returns how far two motions are apart \[mm\], a turn counted at 100 mm, about the extent of a profile.

@@ -125,7 +125,7 @@ impl AlignedProfile<'_> {
     fn beside_rivals(mut self, curve: &MarkedCurve) -> Self {
         let Some((on, nominal)) = &self.on_nominal else { return self };
         let by_all = on.alignment.align == Align::BestFit;
-        self.rivals = better::rivals(nominal, curve, self.side);
+        self.rivals = better::rivals(nominal, curve, self.side, on.alignment.align);
         let other = self.rivals.as_ref().filter(|rivals| by_all || rivals.is_nominal);
         if let Some(better) = other.and_then(|rivals| rivals.better.clone()) {
             self.lost = Some(better);

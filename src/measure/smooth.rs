@@ -90,7 +90,7 @@ impl NoisyPoints {
         if own.sigma < NO_NOISE {
             own.sigma = 0.0;
         }
-        if own.sigma > 0.0 || dropped {
+        if own.sigma > 0.0 || dropped || own.at.windows(3).any(|three| turns_back(three)) {
             let step = own.length() / own.at.len() as f64;
             let bias = 3.0 / ROUNDING.powi(3) / 24.0 * FOURTH;
             let best = (own.sigma.powi(2) * step * SQUARE / (8.0 * bias * bias)).powf(1.0 / 9.0);
@@ -162,7 +162,9 @@ impl NoisyPoints {
             let (last, edge) = (marks.last().copied(), bridge || self.unknown[k] || k + 1 == found.len());
             let step =
                 last.map_or(0.0, |last| (station.x - last.station.x).hypot(station.z - last.station.z));
-            if last.is_some() && step < if edge { 1e-3 * APART } else { APART } {
+            // A point that is off along the curve lies on it, but not between its neighbours.
+            let back = last.is_some_and(|last| is_behind(&last.station, &station));
+            if back || last.is_some() && step < if edge { 1e-3 * APART } else { APART } {
                 bridge |= self.unknown[k];
                 continue;
             }
@@ -260,16 +262,70 @@ fn dense(marks: &[Mark], unknown: &[bool]) -> (Vec<Mark>, Vec<bool>) {
     out
 }
 
+/// Tells whether the path turns by more than a right angle at the middle one of three points.
+fn turns_back(three: &[[f64; 2]]) -> bool {
+    let [a, b, c] = [three[0], three[1], three[2]];
+    (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
+}
+
+/// Tells whether the way from one station to another is against the directions of both.
+fn is_behind(from: &Station, to: &Station) -> bool {
+    let along = |of: &Station| (to.x - from.x) * of.cos + (to.z - from.z) * of.sin;
+    along(from) < 0.0 && along(to) < 0.0
+}
+
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if middle >= values.len() {
+fn median(values: Vec<f64>) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// Returns the value below which this share of the values lies; 0 without any.
+pub(super) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    let at = (share * values.len() as f64) as usize;
+    if at >= values.len() {
         return 0.0;
     }
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    *values.select_nth_unstable_by(at, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured::{CurveKind, Options, of_points};
+    use crate::profile::Side;
+
+    #[test]
+    fn smoothed_curves_stay_by_their_points_where_a_ledge_is() -> crate::error::Result<()> {
+        for rough in 6..20 {
+            for depth in [0.05, 0.1, 0.2, 0.3] {
+                let mut deviates = Deviates::new(rough as u64, 1);
+                let height = |k: usize| {
+                    let x = 0.2 * k as f64 - 30.0;
+                    // A ledge over a few points with noise of 0.4 µm.
+                    let ledge = if (200..200 + rough).contains(&k) { depth } else { 0.0 };
+                    [x, 4e-4 * deviates.draw() + ledge - 0.005 * x * x]
+                };
+                let options = Options {
+                    mirror: Some(false),
+                    flip_z: Some(false),
+                    curve: Some(CurveKind::Interpolation),
+                    ..Options::default()
+                };
+                let points: Vec<[f64; 2]> = (0..300).map(height).collect();
+                let profile = of_points("rough", &points, Side::Rail, &options)?.profile;
+                let Some((marks, _)) = NoisyPoints::new(&profile).smoothed() else { continue };
+                assert!(marks.len() < 3000, "{rough} {depth}: {}", marks.len());
+                let near = |mark: &Mark| {
+                    points.iter().any(|&at| distance(at, [mark.station.x, mark.station.z]) < 0.5)
+                };
+                assert!(marks.iter().all(near), "{rough} {depth}");
+            }
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod page;
 mod rail;
 mod spread;
 mod unmeasured;
+mod web;
 
 use wheelrail::error::Result;
 use wheelrail::measure::*;

@@ -2,14 +2,16 @@
 //! EN 13715.
 
 mod en13715;
+mod web;
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use nalgebra::UnitComplex;
 use serde::Deserialize;
 
 use super::drawing::{self, SegmentData};
-use super::{Arc, Half, Profile, Segment, Side};
+use super::{Arc, Half, Profile, Segment, Side, Station};
 use crate::error::{Error, Result};
 
 pub use en13715::{PATTERN as EN_13715_NAMES, SOURCE as EN_13715_SOURCE};
@@ -17,6 +19,7 @@ pub use en13715::{PATTERN as EN_13715_NAMES, SOURCE as EN_13715_SOURCE};
 #[derive(Debug, Deserialize)]
 struct RailFile {
     rails: BTreeMap<String, RailData>,
+    webs: Vec<web::WebData>,
     former_names: BTreeMap<String, FormerName>,
 }
 
@@ -77,7 +80,7 @@ struct WheelData {
 
 // The two files are compiled into the program, and the tests read every entry: they cannot fail to parse.
 static RAILS: LazyLock<RailFile> = LazyLock::new(|| {
-    let none = |_| RailFile { rails: BTreeMap::new(), former_names: BTreeMap::new() };
+    let none = |_| RailFile { rails: BTreeMap::new(), webs: Vec::new(), former_names: BTreeMap::new() };
     serde_json::from_str(include_str!("rails.json")).unwrap_or_else(none)
 });
 static WHEELS: LazyLock<BTreeMap<String, WheelData>> = LazyLock::new(|| {
@@ -136,6 +139,22 @@ pub fn wheel(name: &str) -> Result<Profile> {
 pub fn is_built_in(profile: &Profile, side: Side) -> bool {
     let built_in = if side == Side::Rail { rail(&profile.name) } else { wheel(&profile.name) };
     built_in.is_ok_and(|own| own.source == profile.source)
+}
+
+/// Returns a built-in rail, as it was built in or moved, with its web and the upper side of its foot; `None` for other profiles, and for
+/// rails whose webs are not built in.
+pub(crate) fn with_web(rail: &Profile) -> Option<Profile> {
+    if !is_built_in(rail, Side::Rail) {
+        return None;
+    }
+    let today = RAILS.former_names.get(&rail.name).map_or(&rail.name, |former| &former.name);
+    let web = RAILS.webs.iter().find(|web| web.rails.contains(today))?;
+    let data = RAILS.rails.get(today)?;
+    let head = head(&rail.name, data).ok()?;
+    let whole = web::section(&head, data, web).ok()?;
+    let [own, to] = [&head, rail].map(|of| of.segments().first().map(Segment::start));
+    let motion = Station::AXES.seen_from(&own?).placed_by(&to?);
+    Some(whole.rotated(UnitComplex::new(motion.angle())).shifted(motion.x, motion.z))
 }
 
 /// Makes a rail head: the crown, then arcs smooth with each other down to the flank tangent, then the flank down to the

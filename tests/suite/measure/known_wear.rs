@@ -110,11 +110,12 @@ impl Worn {
         }
     }
 
-    /// Returns the points at these marks, worn, and otherwise as they are.
-    fn exact(&self) -> Result<Vec<[f64; 2]>> {
+    /// Returns the worn points between two distances along the nominal, and otherwise as they are.
+    fn exact(&self, between: [f64; 2]) -> Result<Vec<[f64; 2]>> {
         let marks = trace(&self.standard(self.name)?, FINE);
+        let inside = marks.iter().filter(|mark| mark.s >= between[0] && mark.s <= between[1]);
         let mut points: Vec<[f64; 2]> = Vec::new();
-        for at in marks.iter().map(|mark| self.worn(mark.station)) {
+        for at in inside.map(|mark| self.worn(mark.station)) {
             if points.last().is_none_or(|last| (last[0] - at[0]).hypot(last[1] - at[1]) > 0.4 * FINE) {
                 points.push(at);
             }
@@ -122,20 +123,21 @@ impl Worn {
         Ok(points)
     }
 
-    /// Returns the points as an instrument has them, with all faults.
-    fn measured(&self, random: &mut Random) -> Result<Vec<[f64; 2]>> {
+    /// Returns the points as an instrument has them, with all faults, and between which distances along the nominal they lie.
+    fn measured(&self, random: &mut Random) -> Result<(Vec<[f64; 2]>, [f64; 2])> {
         let marks = trace(&self.standard(self.name)?, 0.01);
         let length = marks.last().map_or(0.0, |mark: &Mark| mark.s);
         let Faults { outliers, gap, cut, turn, .. } = self.faults.clone();
         let (sin, cos) = turn.to_radians().sin_cos();
         let frame = Station { x: self.moved[0], z: self.moved[1], cos, sin };
-        let (mut points, mut next) = (Vec::new(), cut[0]);
+        let (mut points, mut next, mut between) = (Vec::new(), cut[0], [f64::INFINITY, 0.0f64]);
         for mark in marks {
             let inside = gap.is_none_or(|[middle, length]| (mark.s - middle).abs() > 0.5 * length);
             if mark.s < next || mark.s > length - cut[1] || !inside {
                 continue;
             }
             next = mark.s + self.step;
+            between = [between[0].min(mark.s), mark.s];
             let [x, z] = self.worn(mark.station);
             let off = self.sigma * random.normal();
             let own = mark.station;
@@ -147,7 +149,7 @@ impl Worn {
             let k = random.below(points.len());
             points[k][1] += random.between(0.1, 0.8) * if random.below(2) == 0 { 1.0 } else { -1.0 };
         }
-        Ok(points)
+        Ok((points, between))
     }
 
     /// Draws the curve through points as `profile measure` does; if they cannot be read, with the repair of spikes.
@@ -205,7 +207,7 @@ pub fn campaign(count: u64) -> Result<Tally> {
     for number in 0..count {
         let mut random = Random::stream(65, number);
         let worn = Worn::random(&mut random);
-        let exact = worn.exact()?;
+        let exact = worn.exact([0.0, f64::INFINITY])?;
         let nominal = worn.standard(worn.name)?;
         let options =
             MeasureOptions { align: Some(wheelrail::measure::Align::None), ..MeasureOptions::default() };
@@ -215,13 +217,19 @@ pub fn campaign(count: u64) -> Result<Tally> {
         let from_back = if worn.side == Side::Wheel { 70.0 } else { 0.0 };
         let with = measure(&drawn.clone().shifted(from_back, 0.0), worn.side, Some(&nominal), &options)?;
         let without = measure(&drawn, worn.side, None, &own)?;
+        let (points, between) = worn.measured(&mut random)?;
+        // The area counts above the lowest height that both faces reach.
+        let reached = worn.curve(&worn.exact(between)?)?;
+        let reached = measure(&reached, worn.side, Some(&nominal), &options)?.value(Quantity::HeadAreaLost);
         // Align none takes x = 0 for the back.
-        let truth = |quantity: Quantity| without.value(quantity).or(with.value(quantity));
+        let truth = |quantity: Quantity| match quantity {
+            Quantity::HeadAreaLost => reached,
+            _ => without.value(quantity).or(with.value(quantity)),
+        };
         for (quantity, by_hand) in by_hand(&exact, worn.side) {
             let own = truth(quantity).unwrap_or(f64::NAN);
             assert!((own - by_hand).abs() < EXACT, "{number} {worn:?} {quantity:?}: {own} {by_hand}");
         }
-        let points = worn.measured(&mut random)?;
         let Ok(read) = worn.curve(&points) else {
             tally.refused += 1;
             continue;
@@ -261,10 +269,6 @@ impl Tally {
             let Some(truth) = truth(quantity).filter(|_| nominal || !wear.contains(&quantity)) else {
                 continue;
             };
-            // The area counts above the lowest height that the faces reach: cut faces have another.
-            if quantity == Quantity::HeadAreaLost && worn.faults.cut != [0.0; 2] {
-                continue;
-            }
             let Some(value) = measures.value(quantity) else {
                 missing.push(quantity.key());
                 continue;
