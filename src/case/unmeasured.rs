@@ -9,9 +9,6 @@ use crate::search::Contact;
 /// Distance \[mm\] from a bridge's box within which a point lies in it: searches put it on a profile to some roundings.
 const ROUNDING: f64 = 1e-6;
 
-/// Difference \[mm\] of a bridge's height from that of the surface that faces the other body, from which on it is another sheet.
-const SAME_SHEET: f64 = 0.1;
-
 /// A bridge in a contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BridgeInContact {
@@ -25,7 +22,7 @@ pub struct BridgeInContact {
     pub x: [f64; 2],
 }
 
-/// The boxes around the bridges of both profiles of a pair, none of a body that varies.
+/// The boxes around the bridges of both profiles of a pair, none of a body that varies. A bridge leaves its chord by less than its length.
 #[derive(Debug, Clone)]
 pub(super) struct Bridges([Vec<[[f64; 2]; 2]>; 2]);
 
@@ -37,7 +34,8 @@ impl Bridges {
             let own = profile.segments().iter().filter(|segment| swept && segment.is_gap());
             own.map(|segment| {
                 let (a, b) = (segment.start(), segment.end());
-                [[a.x.min(b.x), a.z.min(b.z)], [a.x.max(b.x), a.z.max(b.z)]]
+                let length = (b.x - a.x).hypot(b.z - a.z);
+                [[a.x.min(b.x), a.z.min(b.z) - length], [a.x.max(b.x), a.z.max(b.z) + length]]
             })
             .collect()
         };
@@ -68,7 +66,7 @@ pub(super) fn bridge_in_contact(placement: &Placement, patch: Option<&Patch>) ->
         let ends = [segment.start(), segment.end()];
         let seen = ends.map(|end| body.contact_frame().inverse_transform_point(&[end.x, end.z].into()));
         let middle = nalgebra::center(&seen[0], &seen[1]);
-        let facing = (body.section().height(middle.x) - middle.y).abs() <= SAME_SHEET;
+        let facing = (body.section().height(middle.x) - middle.y).abs() <= (seen[1] - seen[0]).norm();
         let [low, high] = [seen[0].x.min(seen[1].x), seen[0].x.max(seen[1].x)];
         let at_c = placement.is_at_contact() && low <= ROUNDING && high >= -ROUNDING;
         facing && (at_c || own.iter().any(|part| part.xi.low < high && part.xi.high > low))

@@ -28,7 +28,8 @@ impl BadScan {
         let marks = trace(drawn, step);
         let apart = marks.windows(2).filter(|pair| pair[1].s - pair[0].s > 0.5 * step);
         let points: Vec<[f64; 2]> = apart.map(|pair| [pair[0].station.x, pair[0].station.z]).collect();
-        let first = points.iter().position(|[x, _]| *x >= from).expect("a point");
+        // The chain begins below the head.
+        let first = points.iter().position(|[x, z]| *x >= from && *z > -8.0).expect("a point");
         let run: RangeInclusive<usize> = first..=first + count - 1;
         let off = dice.between(0.1, 0.3) * *dice.pick(&[-1.0, 1.0]);
         let z = |k: usize| points[k][1] + 0.001 * (k as f64).sin() + if run.contains(&k) { off } else { 0.0 };

@@ -128,7 +128,7 @@ impl OnLines<'_> {
             let least = ((1.0 + RISE) * most - here) / (FINEST * GROWTH);
             if here > 0.0 {
                 let side = self.0.cells.step[axis];
-                out.extend(kink(gap, part, [from, to], (least, side)).map(|Turn { t, kink, folds }| {
+                out.extend(kink(gap, part, [from, to], (least, side)).map(|SlopeTurn { t, kink, folds }| {
                     let reached = here + folds * GROWTH * kink;
                     OnLine { t, kink, rounded: folds < FINEST, reached, rise: LN_2 * GROWTH * kink }
                 }));
@@ -176,7 +176,7 @@ impl OnLines<'_> {
 
 /// A turn of s: its place \[mm\], the change of slope, and the e-folds by which cells may shrink until they show it.
 #[derive(Debug, Clone, Copy)]
-struct Turn {
+struct SlopeTurn {
     t: f64,
     kink: f64,
     folds: f64,
@@ -189,14 +189,14 @@ fn kink(
     mut part: Interval,
     mut slopes: [f64; 2],
     (least, side): (f64, f64),
-) -> Option<Turn> {
-    let mut most: Option<Turn> = None;
+) -> Option<SlopeTurn> {
+    let mut most: Option<SlopeTurn> = None;
     while slopes[1] - slopes[0] >= least {
         let (middle, kink) = (part.low + 0.5 * part.width(), slopes[1] - slopes[0]);
         let sharp = part.width() <= SHARP || middle <= part.low || middle >= part.high;
         let folds = if sharp { FINEST } else { (side / part.width()).ln().clamp(0.0, ROUNDED) };
         if most.is_none_or(|turn| folds * kink >= turn.folds * turn.kink) {
-            most = Some(Turn { t: middle, kink, folds });
+            most = Some(SlopeTurn { t: middle, kink, folds });
         }
         if sharp {
             break;
