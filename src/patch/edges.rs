@@ -198,11 +198,11 @@ impl EdgeFinder<'_> {
                 let rise = (wheel.cos - wheel.sin * slope[k]) / sum;
                 let (mut square, mut half) = (rise, 0.5 * slope[k] * tangent);
                 let mut rest = gap[k] - at.lift[k] + slope[k] * shift[k];
-                let mut sum_below = f64::INFINITY;
+                let [mut w_below, mut sum_below] = [f64::INFINITY; 2];
                 if let Some(roller) = &self.roller {
-                    let w = roller.axle_distance(xi[k], fall[k] - ground[k]);
+                    w_below = roller.axle_distance(xi[k], fall[k] - ground[k]);
                     let eta = y[k] * secant + aside[k];
-                    sum_below = w + (w * w + eta * eta).sqrt();
+                    sum_below = w_below + (w_below * w_below + eta * eta).sqrt();
                     let rise = (roller.cos - roller.sin * slope_below[k]) / sum_below;
                     square += rise * secant * secant;
                     half += rise * secant * aside[k];
@@ -215,7 +215,7 @@ impl EdgeFinder<'_> {
                 // The steps fall in geometric progression: the next one would be below rounding.
                 let small = (contraction > 0)
                     & (w > 0.0)
-                    & (sum_below > 0.0)
+                    & (w_below > 0.0)
                     & (step * step <= f64::EPSILON * size * change[k].min(size));
                 settled[k] = if small { 1.0 } else { settled[k] };
                 (y[k], change[k]) = (next, step);

@@ -61,7 +61,7 @@ fn curved(profile: &Profile, side: Side, [low, high]: [f64; 2], [step, noise]: [
         let curve = Polynomial::span(&[x[k], 1.0], &c, t).expect("a piece");
         Segment { label: String::new(), shape: Shape::Polynomial(curve) }
     };
-    Profile::new(&format!("{} every {step} mm", profile.name), "", (0..count).map(piece).collect())
+    Profile::new(format!("{} every {step} mm", profile.name), "", (0..count).map(piece).collect())
         .expect("a profile")
 }
 
