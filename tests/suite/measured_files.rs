@@ -95,6 +95,9 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
     assert!(measured("rail.prr", "").is_ok_and(|m| m.record.transform.steps.len() == 3));
     let one_sided = measured("rail.csv", "unit = 'm'\ncolumns = [2, 3]");
     assert!(one_sided.is_ok_and(|m| m.record.transform.scale == [-1e3, 1e3]));
+    // Its second section begins beside points of the first one.
+    let stitched = measured("sections.mpt", "mirror = true");
+    assert!(stitched.is_ok_and(|m| matches!(&m.record.repairs[..], [only] if only.repair == Repair::Sort)));
     let wheel = bytes("wheel.prw");
     assert!(profile("wheel.prw", &wheel, Side::Rail, &Options::default()).is_err());
     for (name, options, part) in [
@@ -102,7 +105,6 @@ fn what_the_file_does_not_prove_is_an_error_with_the_choices() {
         ("rail.csv", "unit = 'm'", "columns"),
         ("wheel.prw", "unit = 'mm'", "unit"),
         ("wheel.prw", "origin = 'gauge-point'", "origin"),
-        ("sections.mpt", "mirror = true", "back"),
         ("sections.mpt", "section = 3", "section"),
         ("wheel.prw", "curve = 'elements'", "elements"),
     ] {

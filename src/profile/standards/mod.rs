@@ -151,7 +151,12 @@ pub(crate) fn with_web(rail: &Profile) -> Option<Profile> {
     let web = RAILS.webs.iter().find(|web| web.rails.contains(today))?;
     let data = RAILS.rails.get(today)?;
     let head = head(&rail.name, data).ok()?;
-    let whole = web::section(&head, data, web).ok()?;
+    let under = web::Underside {
+        run: data.underside_1_to,
+        apex_z: data.underside_apex_z,
+        fillet_radius: data.lower_fillet_radius,
+    };
+    let whole = web::section(&head, &under, web).ok()?;
     let [own, to] = [&head, rail].map(|of| of.segments().first().map(Segment::start));
     let motion = Station::AXES.seen_from(&own?).placed_by(&to?);
     Some(whole.rotated(UnitComplex::new(motion.angle())).shifted(motion.x, motion.z))

@@ -2,7 +2,6 @@
 
 use serde::Deserialize;
 
-use super::RailData;
 use crate::error::Result;
 use crate::profile::{Arc, Profile, Segment, Station};
 
@@ -47,12 +46,22 @@ struct SectionCheck {
     bottom_radius: f64,
 }
 
-type Point = [f64; 2];
+type Place = [f64; 2];
+
+/// The underside of a head.
+pub(super) struct Underside {
+    /// Run per unit of rise, outwards.
+    pub run: f64,
+    /// z of the point where both undersides meet \[mm\].
+    pub apex_z: f64,
+    /// Radius between flank and underside \[mm\].
+    pub fillet_radius: f64,
+}
 
 /// Returns a rail with web and upper side of the foot, from one edge of the foot to the other; `head` is the rail as it is built in.
-pub(super) fn section(head: &Profile, rail: &RailData, web: &WebData) -> Result<Profile> {
+pub(super) fn section(head: &Profile, under: &Underside, web: &WebData) -> Result<Profile> {
     let Some(end) = head.segments().last().map(Segment::end) else { return Ok(head.clone()) };
-    let right = below(end, rail, web);
+    let right = below(end, under, web);
     let half = Profile::new(&head.name, &head.source, right.clone())?;
     let mut all = half.mirrored().segments().to_vec();
     all.extend(head.segments().iter().cloned());
@@ -61,16 +70,16 @@ pub(super) fn section(head: &Profile, rail: &RailData, web: &WebData) -> Result<
 }
 
 /// Returns what lies below the right end of a head: underside, web and foot.
-fn below(head: Station, rail: &RailData, web: &WebData) -> Vec<Segment> {
-    let n = rail.underside_1_to;
-    let at = |[x, d]: Point| [x, web.middle_z + d];
-    let lower = |[x, d]: Point| [x, web.middle_z - d];
+fn below(head: Station, under: &Underside, web: &WebData) -> Vec<Segment> {
+    let n = under.run;
+    let at = |[x, d]: Place| [x, web.middle_z + d];
+    let lower = |[x, d]: Place| [x, web.middle_z - d];
     let inwards = unit([-n, -1.0]);
     // The underside meets the flank's tangent where it is as high.
-    let share = (rail.underside_apex_z + head.x / n - head.z) / (head.sin - head.cos / n);
+    let share = (under.apex_z + head.x / n - head.z) / (head.sin - head.cos / n);
     let corner = [head.x + share * head.cos, head.z + share * head.sin];
-    let corner = Rounding::new(corner, [head.cos, head.sin], inwards, rail.lower_fillet_radius);
-    let (centres, joints) = web.fillet(n, rail.underside_apex_z - web.middle_z);
+    let corner = Rounding::new(corner, [head.cos, head.sin], inwards, under.fillet_radius);
+    let (centres, joints) = web.fillet(n, under.apex_z - web.middle_z);
     let radii = web.fillet_radii;
     let mut all = vec![corner.arc(), line(corner.to, at(joints[3]))];
     all.extend((0..3).rev().map(|k| arc(at(centres[k]), radii[k], at(joints[k + 1]), at(joints[k]))));
@@ -78,7 +87,7 @@ fn below(head: Station, rail: &RailData, web: &WebData) -> Vec<Segment> {
     all.extend((0..3).map(|k| arc(lower(centres[k]), radii[k], lower(joints[k]), lower(joints[k + 1]))));
     let (half, m) = (0.5 * web.foot_width, web.foot_1_to);
     // The inner foot is the underside's image; it meets the outer foot here.
-    let apex = 2.0 * web.middle_z - rail.underside_apex_z;
+    let apex = 2.0 * web.middle_z - under.apex_z;
     let x = (web.foot_edge_z + half / m - apex) / (m.recip() - n.recip());
     let [inner, outer] = [unit([n, -1.0]), unit([m, -1.0])];
     let foot = Rounding::new([x, apex - x / n], inner, outer, web.foot_radius);
@@ -91,7 +100,7 @@ fn below(head: Station, rail: &RailData, web: &WebData) -> Vec<Segment> {
 impl WebData {
     /// Returns centres and ends of the fillet's arcs from the web outwards, as \[x, distance from the level line\]. The last one touches
     /// the underside, which rises by 1 in `n` from `apex`.
-    fn fillet(&self, n: f64, apex: f64) -> ([Point; 3], [Point; 4]) {
+    fn fillet(&self, n: f64, apex: f64) -> ([Place; 3], [Place; 4]) {
         let [r, second, third] = self.fillet_radii;
         let [begin, end] = self.first_fillet;
         let side = 0.5 * self.thickness;
@@ -112,16 +121,16 @@ impl WebData {
 
 /// An arc between two lines.
 struct Rounding {
-    centre: Point,
+    centre: Place,
     /// Signed as that of [`Arc`].
     radius: f64,
-    from: Point,
-    to: Point,
+    from: Place,
+    to: Place,
 }
 
 impl Rounding {
     /// Rounds the corner at which the direction changes from `u` to `w`, both of length 1.
-    fn new(corner: Point, u: Point, w: Point, radius: f64) -> Self {
+    fn new(corner: Place, u: Place, w: Place, radius: f64) -> Self {
         let turn = (u[0] * w[1] - u[1] * w[0]).atan2(dot(u, w));
         let taken = radius * (0.5 * turn.abs()).tan();
         let radius = radius.copysign(turn);
@@ -136,28 +145,28 @@ impl Rounding {
 }
 
 /// Makes the arc about a centre between two points on its circle; `radius` is signed.
-fn arc(centre: Point, radius: f64, from: Point, to: Point) -> Segment {
-    let at = |[x, z]: Point| Station { x, z, cos: (centre[1] - z) / radius, sin: (x - centre[0]) / radius };
+fn arc(centre: Place, radius: f64, from: Place, to: Place) -> Segment {
+    let at = |[x, z]: Place| Station { x, z, cos: (centre[1] - z) / radius, sin: (x - centre[0]) / radius };
     Segment::arc(Arc { start: at(from), end: at(to), radius })
 }
 
-fn line(from: Point, to: Point) -> Segment {
+fn line(from: Place, to: Place) -> Segment {
     let [cos, sin] = unit([to[0] - from[0], to[1] - from[1]]);
-    let at = |[x, z]: Point| Station { x, z, cos, sin };
+    let at = |[x, z]: Place| Station { x, z, cos, sin };
     Segment::arc(Arc { start: at(from), end: at(to), radius: f64::INFINITY })
 }
 
-fn unit([x, z]: Point) -> Point {
+fn unit([x, z]: Place) -> Place {
     let length = x.hypot(z);
     [x / length, z / length]
 }
 
-fn dot(a: Point, b: Point) -> f64 {
+fn dot(a: Place, b: Place) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
 /// Returns the point at a share of the way from `a` to `b`.
-fn towards(a: Point, b: Point, share: f64) -> Point {
+fn towards(a: Place, b: Place, share: f64) -> Place {
     [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]
 }
 
@@ -172,9 +181,9 @@ mod tests {
     const MOMENT: f64 = 0.1;
 
     /// Area \[cm²\] and both moments \[cm⁴\] of a closed outline.
-    fn properties(ring: &[Point]) -> (f64, [f64; 2]) {
+    fn properties(ring: &[Place]) -> (f64, [f64; 2]) {
         let edges = || ring.iter().zip(ring.iter().cycle().skip(1));
-        let sum = |of: &dyn Fn(Point, Point) -> f64| {
+        let sum = |of: &dyn Fn(Place, Place) -> f64| {
             edges().map(|(a, b)| (a[0] * b[1] - b[0] * a[1]) * of(*a, *b)).sum::<f64>()
         };
         let area = sum(&|_, _| 0.5);
@@ -193,7 +202,7 @@ mod tests {
                 for joint in whole.continuity() {
                     assert!(joint.gap < 1e-9 && joint.kink.abs() < 1e-9, "{}: {joint:?}", check.rail);
                 }
-                let mut ring: Vec<Point> =
+                let mut ring: Vec<Place> =
                     trace(&whole, 0.05).iter().map(|mark| [mark.station.x, mark.station.z]).collect();
                 let (half, r) = (0.5 * web.foot_width, check.bottom_radius);
                 for k in 0..=50 {
