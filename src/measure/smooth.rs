@@ -90,7 +90,7 @@ impl NoisyPoints {
         if own.sigma < NO_NOISE {
             own.sigma = 0.0;
         }
-        if own.sigma > 0.0 || dropped || own.at.windows(3).any(|three| turns_back(three)) {
+        if own.sigma > 0.0 || dropped || own.at.windows(3).any(turns_back) {
             let step = own.length() / own.at.len() as f64;
             let bias = 3.0 / ROUNDING.powi(3) / 24.0 * FOURTH;
             let best = (own.sigma.powi(2) * step * SQUARE / (8.0 * bias * bias)).powf(1.0 / 9.0);

@@ -34,7 +34,8 @@ pub fn repair(points: &mut Vec<Point>, allowed: &[Repair]) -> Vec<Repaired> {
     let order = [Repair::DropDuplicates, Repair::Sort, Repair::RemoveSpikes, Repair::CutLoops];
     let mut done = Vec::new();
     for repair in order {
-        if !allowed.contains(&repair) && !(repair == Repair::Sort && are_scans(points)) {
+        let wanted = allowed.contains(&repair) || repair == Repair::Sort && are_scans(points);
+        if !wanted {
             continue;
         }
         let mut touched: Vec<Point> = Vec::new();
