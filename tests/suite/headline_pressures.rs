@@ -132,7 +132,7 @@ fn random(seed: u64, more: &str) -> Result<Run> {
             (format!("offset = {}", dice.between(-6.0, 6.0)), (rail, wheel))
         }
         7 => {
-            let name: &str = dice.pick(&WHEELS[1..4]);
+            let name: &&str = dice.pick(&WHEELS[1..4]);
             let thin = standards::wheel(name)?;
             (format!("offset = {}", dice.between(0.0, 4.0)), (turned, thin))
         }
