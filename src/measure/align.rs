@@ -38,6 +38,8 @@ const NEARLY_ALL: f64 = 0.9;
 
 /// Turn \[deg\] by which instruments are put on at most; beside it rails lie inclined.
 const MOST_TURNED: f64 = 0.3;
+/// Turn \[deg\] from which on a profile is not upright.
+const NOT_UPRIGHT: f64 = 45.0;
 /// Inclinations of rails: 1 in so many.
 const INCLINED: [f64; 4] = [f64::INFINITY, 40.0, 30.0, 20.0];
 /// Depth \[mm\] below the top of rail at which faces are brought to each other.
@@ -256,7 +258,8 @@ pub(super) fn consensus(
     fits.max_by(|a, b| a.length.total_cmp(&b.length))
 }
 
-/// Fits a curve by parts from all first guesses; if some of the parts may be off the nominal, by `most` of them.
+/// Fits a curve by parts from all first guesses; if some of the parts may be off the nominal, by `most` of them. A profile that is turned by
+/// more than 45° is not upright as its file has it: a web fits a foot so.
 fn by_parts(fit: &NominalFit, side: Side, most: bool) -> Vec<Result<FittedMotion, String>> {
     let mut all: Vec<Result<FittedMotion, String>> = Vec::new();
     for start in starts(fit.measured, fit.nominal, side) {
@@ -266,7 +269,16 @@ fn by_parts(fit: &NominalFit, side: Side, most: bool) -> Vec<Result<FittedMotion
             all.push(found);
         }
     }
-    if most { all.into_iter().map(|found| fit.of_most(found?)).collect() } else { all }
+    let upright = |found: FittedMotion| {
+        let turn = found.motion.angle().to_degrees();
+        if turn.abs() > NOT_UPRIGHT {
+            Err(format!("it fits where it is turned by {turn:.0} deg"))
+        } else {
+            Ok(found)
+        }
+    };
+    let fitted = |found: Result<FittedMotion, String>| if most { fit.of_most(found?) } else { found };
+    all.into_iter().map(|found| upright(fitted(found)?)).collect()
 }
 
 /// Tells why a fit gives no wear: its parts are off the nominal, or its base is shorter than `least` \[mm\].
