@@ -53,9 +53,8 @@ impl MarkedCurve {
     /// Takes a curve as it is drawn, with marks at most `step` \[mm\] apart.
     pub fn drawn(profile: &Profile, step: f64) -> Self {
         let marks = trace(profile, step);
-        let gap = |pair: &[Mark]| {
-            pair[0].segment == pair[1].segment && profile.segments()[pair[0].segment].is_gap()
-        };
+        // Two marks stand at a joint: so its place is beside the gap, too.
+        let gap = |pair: &[Mark]| pair.iter().any(|mark| profile.segments()[mark.segment].is_gap());
         let unknown = marks.windows(2).map(gap).chain([false]).take(marks.len()).collect();
         Self { marks, unknown, points: Arc::default() }
     }
@@ -161,10 +160,11 @@ impl MarkedCurve {
     pub fn highest(&self, sign: f64) -> Option<CurvePoint> {
         let height = |k: &usize| sign * self.marks[*k].station.z;
         let best = (0..self.marks.len()).max_by(|a, b| height(a).total_cmp(&height(b)))?;
-        let at = |mark: usize, [x, z]: [f64; 2], unknown| CurvePoint { x, z, mark, unknown };
         let own = &self.marks[best].station;
-        let beside = [best.checked_sub(1), Some(best)].into_iter().flatten();
-        let mut found = at(best, [own.x, own.z], beside.into_iter().any(|k| self.unknown[k]));
+        // Beside a gap the highest place may lie in it, whatever the curve does next to it.
+        let unknown = [best.checked_sub(1), Some(best)].into_iter().flatten().any(|k| self.unknown[k]);
+        let at = |mark: usize, [x, z]: [f64; 2]| CurvePoint { x, z, mark, unknown };
+        let mut found = at(best, [own.x, own.z]);
         for k in best.saturating_sub(1)..=best {
             let Some(pair) = self.marks.get(k..k + 2) else { continue };
             let level = |share: f64| {
@@ -173,7 +173,7 @@ impl MarkedCurve {
                 pair[0].between(&pair[1], share + h)[1] - pair[0].between(&pair[1], share - h)[1]
             };
             if let Some(share) = bracketed(level, 0.0, 1.0) {
-                let place = at(k, pair[0].between(&pair[1], share), self.unknown[k]);
+                let place = at(k, pair[0].between(&pair[1], share));
                 if sign * place.z > sign * found.z {
                     found = place;
                 }
