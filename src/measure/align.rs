@@ -188,8 +188,8 @@ fn fitted(
     align: Align,
     options: &MeasureOptions,
 ) -> Result<Aligned, String> {
-    let most = align == Align::Web;
-    let apart = if most { WEB_STEP } else { STEP };
+    let is_web = align == Align::Web;
+    let apart = if is_web { WEB_STEP } else { STEP };
     let (measured, onto) = (curve.thinned(apart), onto(nominal.profile, align, STEP));
     let work = measured.marks.len().saturating_mul(onto.marks.len());
     if work > MOST_WORK {
@@ -198,9 +198,9 @@ fn fitted(
         ));
     }
     let (parts, what) = parts(&onto, side, align, options);
-    let least_part = if most { LEAST_OF_BOTH } else { LEAST_PART };
+    let least_part = if is_web { LEAST_OF_BOTH } else { LEAST_PART };
     let fit = NominalFit { measured: &measured, nominal: &onto, parts: &parts, least_part };
-    let all = by_parts(&fit, side, most);
+    let all = by_parts(&fit, side, is_web);
     let best = all.iter().flatten().min_by(|a, b| a.rms.total_cmp(&b.rms)).copied();
     let none = || all.iter().find_map(|found| found.as_ref().err().cloned()).unwrap_or_default();
     let of_parts = best.ok_or_else(|| format!("no alignment by {what}: {}", none()))?;
@@ -218,7 +218,8 @@ fn fitted(
     let least = if is_turned { (measured.lengths().sum::<f64>() / 3.0).max(LEAST_BASE) } else { LEAST_BASE };
     let refused = refused(of_parts, found, least);
     let parts_fit = of_parts.rms <= LARGEST_RESIDUAL;
-    let doubt = refused.clone().or_else(|| most.then(|| off(found)).flatten()).or_else(|| turned(turn, side));
+    let doubt =
+        refused.clone().or_else(|| is_web.then(|| off(found)).flatten()).or_else(|| turned(turn, side));
     let [x, z, by_turn] = [motion.x, motion.z, turn].map(in_micrometres);
     let text = format!("{by}, over {length:.0} mm; moved by ({x}, {z}) mm, turned by {by_turn} deg");
     let alignment = Alignment { align, text, residual: Some(rms), doubt };
@@ -249,18 +250,19 @@ pub(super) fn consensus(
     side: Side,
     align: Align,
 ) -> Option<FittedMotion> {
-    let most = align == Align::Web;
-    let by = if most { align } else { Align::BestFit };
+    let is_web = align == Align::Web;
+    let by = if is_web { align } else { Align::BestFit };
     let (parts, _) = parts(onto, side, by, &MeasureOptions::default());
     let fit = NominalFit { measured, nominal: onto, parts: &parts, least_part: LEAST_OF_BOTH };
-    let all = by_parts(&fit, side, most).into_iter().flatten();
+    let all = by_parts(&fit, side, is_web).into_iter().flatten();
     let fits = all.filter_map(|by_parts| fit.of_all(by_parts, 0.5 * FITS.high).ok());
     fits.max_by(|a, b| a.length.total_cmp(&b.length))
 }
 
-/// Fits a curve by parts from all first guesses; if some of the parts may be off the nominal, by `most` of them. A profile that is turned by
-/// more than 45° is not upright as its file has it: a web fits a foot so.
-fn by_parts(fit: &NominalFit, side: Side, most: bool) -> Vec<Result<FittedMotion, String>> {
+/// Fits a curve by parts from all first guesses. Of a web some parts may be off the nominal: it is fitted by those that are not.
+///
+/// A fit that turns the profile by more than 45° is an error: the points are upright, and such a fit has put the web on the foot.
+fn by_parts(fit: &NominalFit, side: Side, is_web: bool) -> Vec<Result<FittedMotion, String>> {
     let mut all: Vec<Result<FittedMotion, String>> = Vec::new();
     for start in starts(fit.measured, fit.nominal, side) {
         let found = fit.of_parts(start);
@@ -277,7 +279,7 @@ fn by_parts(fit: &NominalFit, side: Side, most: bool) -> Vec<Result<FittedMotion
             Ok(found)
         }
     };
-    let fitted = |found: Result<FittedMotion, String>| if most { fit.of_most(found?) } else { found };
+    let fitted = |found: Result<FittedMotion, String>| if is_web { fit.of_most(found?) } else { found };
     all.into_iter().map(|found| upright(fitted(found)?)).collect()
 }
 

@@ -50,6 +50,7 @@ mod sweep;
 mod touch;
 mod walk;
 mod wheelset;
+mod wheelset_touch;
 
 pub use geometry::{
     AMPLITUDE, ContactBand, GeometryAt, KeyFigures, NONLINEARITY, active_faces, gauge, geometry_over,
@@ -67,8 +68,9 @@ pub(crate) use touch::small_angle;
 pub use touch::{
     Contact, ContactSearch, ONE_CONTACT, Pose, ProfilePair, Selection, Touch, first_touch, wheel_rotation,
 };
-pub(crate) use wheelset::LowestPlaces;
-pub use wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch, WheelsetTouch};
+pub use wheelset::{WheelsetOnTrack, WheelsetSearch};
+pub(crate) use wheelset_touch::LowestPlaces;
+pub use wheelset_touch::{SideTouch, WheelsetTouch};
 
 #[cfg(test)]
 mod tests;

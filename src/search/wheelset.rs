@@ -12,7 +12,8 @@ use super::locus::Attitude;
 use super::over_rail::Work;
 use super::position::{Position, Roll};
 use super::side::{SideOnTrack, SidePair, SideSearch};
-use super::touch::{Selection, Touch, no_contact, over_hole, small_angle};
+use super::touch::{Selection, no_contact, over_hole, small_angle};
+use super::wheelset_touch::{LowestPlaces, SideTouch, WheelsetTouch};
 use crate::error::{Result, finite};
 use crate::placement::{Pair, RailDistance, Track, WheelDistance, Wheelset};
 
@@ -118,54 +119,6 @@ pub struct WheelsetSearch<'a> {
     sides: [SideSearch<'a>; 2],
     /// Which wheels stood over a hole of a list of slices, or would have touched at its edge, at the last position.
     over_holes: [bool; 2],
-}
-
-/// First touch of both wheels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WheelsetTouch<'a> {
-    /// Roll \[rad\], solved or given.
-    pub roll: f64,
-    /// Left and right side.
-    pub sides: [SideTouch<'a>; 2],
-    /// Where the lowest places are, for searches nearby.
-    pub(crate) places: LowestPlaces,
-}
-
-/// The lowest places of a first touch, from which searches nearby begin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LowestPlaces {
-    roll: f64,
-    meetings: [Meeting; 2],
-    /// Derivative of the difference of the sides' heights with respect to the roll, over that of two treads \[1\].
-    steadiness: f64,
-}
-
-impl LowestPlaces {
-    /// Gives the elements of wheel and rail that meet on each side. While they stay the same, results are analytic in the position.
-    pub fn elements(&self) -> [[u32; 2]; 2] {
-        self.meetings.map(|meeting| meeting.elements)
-    }
-
-    /// Gives the rate at which the heights of both sides part with the roll, as a share of that of level treads. Where it falls to 0 the
-    /// roll at which both wheels touch ends: beyond there is another one, or none.
-    pub fn steadiness(&self) -> f64 {
-        self.steadiness
-    }
-
-    /// Gives the roll \[rad\].
-    pub fn roll(&self) -> f64 {
-        self.roll
-    }
-}
-
-/// First touch of one side.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SideTouch<'a> {
-    /// Height \[mm\] of the axle's middle above R, the right-hand wheel's, over the top of rail when this side touches, + up: −0.18
-    /// for a centred S1002 on 60E1 at 1:40. Equal on both sides if the roll is solved.
-    pub z: f64,
-    /// Contacts of the side, in its own axes.
-    pub touch: Touch<'a>,
 }
 
 /// Signs of x of the left and the right side, in the order of every pair of sides.

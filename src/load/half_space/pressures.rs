@@ -7,8 +7,8 @@ use super::cells::Cells;
 /// Relative error of the largest pressure per violation of contact's conditions relative to δ; up to 4 was seen on ellipses.
 const UNSETTLED: f64 = 5.0;
 
-/// Error of the pressure per turn of s between cells, as a share of E*: its growth wherever cells are e times smaller, so that a turn over a
-/// third of a cell counts in full. It is 1/2π.
+/// Error of the largest pressure per change of slope of s between two cells, as a share of E*: 1/2π, by which the pressure at a kink grows
+/// when cells become e times narrower. A change of slope over a third of a cell counts as a kink.
 const ROUGH: f64 = 0.159;
 
 /// Rise of the largest pressure by what cells do not show, relative, from which on they are too wide along that axis.

@@ -63,7 +63,7 @@ impl Fold {
 const SCAN: usize = 4;
 
 /// Returns whether points are scans of neighbouring parts of one profile, one after the other, as several scanners on one car give them:
-/// each part is in order, and overlaps the next over less than half of it. Their order is known, and no repair to be asked for.
+/// each part is in order, and overlaps the next one over less than half of either. Nothing about them has to be asked.
 pub(super) fn are_scans(points: &[Point]) -> bool {
     let folds = folds(&Path::of(points));
     let jumps: Vec<usize> = folds.iter().filter_map(|fold| fold.jump(points)).collect();

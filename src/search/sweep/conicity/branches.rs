@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::numerics::roots::bracketed;
 use crate::search::position::{Position, Roll};
-use crate::search::wheelset::{SideTouch, WheelsetOnTrack, WheelsetSearch};
+use crate::search::wheelset::{WheelsetOnTrack, WheelsetSearch};
+use crate::search::wheelset_touch::SideTouch;
 use crate::search::{Contact, Selection};
 
 /// The near misses that are considered: gaps up to 1 µm close within a displacement of 0.01 to 0.1 mm. With a
