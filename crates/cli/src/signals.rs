@@ -6,17 +6,18 @@ use std::sync::Mutex;
 /// Locked once the program ends because of a signal.
 static ENDING: Mutex<()> = Mutex::new(());
 
-/// Begins to wait for signals. If the system grants no thread for this, a signal ends the program at once, and the next run
+/// Begins to wait for signals, but for those that the caller has this program ignore. If the system grants no thread for this, a signal ends the program at once, and the next run
 /// cleans up.
 #[cfg(unix)]
 pub(super) fn watch() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     let wait = || {
-        let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
-        if !is_ignored(SIGHUP) {
-            drop(signals.add_signal(SIGHUP));
-        }
+        // Where the system does not tell, `nohup` may have had SIGHUP ignored.
+        let unknown = |signal| signal == SIGHUP;
+        let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
+        let heard = heard.filter(|signal| !is_ignored(*signal).unwrap_or_else(|| unknown(*signal)));
+        let Ok(mut signals) = Signals::new(heard) else { return };
         let Some(signal) = signals.forever().next() else { return };
         let _ending = ENDING.lock();
         wheelrail::files::discard_all();
@@ -25,13 +26,14 @@ pub(super) fn watch() {
     drop(std::thread::Builder::new().name("signals".into()).spawn(wait));
 }
 
-/// Whether the caller has this program ignore a signal, as `nohup` does with SIGHUP; true where the system does not tell.
+/// Whether the caller has this program ignore a signal, as `nohup` does with SIGHUP and a script with the SIGINT of what it begins by `&`;
+/// `None` where the system does not tell.
 #[cfg(unix)]
-fn is_ignored(signal: i32) -> bool {
+fn is_ignored(signal: i32) -> Option<bool> {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    ignored.is_none_or(|mask| mask >> (signal - 1) & 1 == 1)
+    ignored.map(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
 /// Does nothing: on other systems Ctrl-C ends the program at once, and the next run cleans up.

@@ -241,6 +241,18 @@ fn program() -> Command {
     command
 }
 
+/// The program with no signal ignored, though these tests may run under `nohup` or in the background of a script.
+#[cfg(unix)]
+fn heard() -> Command {
+    if cfg!(not(target_os = "linux")) {
+        return program();
+    }
+    let mut command = Command::new("env");
+    command.args(["--default-signal=INT,TERM,HUP", env!("CARGO_BIN_EXE_wheelrail")]);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
 /// A fresh folder for one test.
 fn scratch(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile").join(name);
@@ -310,7 +322,7 @@ fn signals_leave_the_old_or_the_new_folder_and_nothing_else() {
     let folder = scratch("signals");
     let out = folder.join("out");
     let run = |approach: f64| {
-        let mut command = program();
+        let mut command = heard();
         command.arg("run").arg(scene_file(&folder, approach)).arg("--out").arg(&out);
         command
     };
@@ -347,35 +359,37 @@ fn signals_leave_the_old_or_the_new_folder_and_nothing_else() {
     }
 }
 
-/// `nohup` has a program ignore SIGHUP, and so it goes on.
+/// `nohup` has a program ignore SIGHUP, a script the SIGINT of what it begins by `&`: it goes on.
 #[test]
 #[cfg(target_os = "linux")]
-fn a_run_under_nohup_goes_on_when_its_terminal_closes() {
-    let folder = scratch("nohup");
-    let out = folder.join("out");
-    let mut child = Command::new("nohup")
-        .arg(env!("CARGO_BIN_EXE_wheelrail"))
-        .arg("run")
-        .arg(scene_file(&folder, 0.03))
-        .arg("--out")
-        .arg(&out)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("nohup");
-    let id = child.id().to_string();
-    let ignores = || {
-        let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
-        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")?.trim().chars().last());
-        mask.and_then(|digit| digit.to_digit(16)).is_some_and(|digit| digit & 1 == 1)
-    };
-    // Before `nohup` has said so, a signal would end it.
-    while !ignores() && child.try_wait().is_ok_and(|status| status.is_none()) {}
-    while child.try_wait().is_ok_and(|status| status.is_none()) {
-        let _ = Command::new("kill").arg("-HUP").arg(&id).stderr(Stdio::null()).status();
+fn a_signal_that_the_caller_has_ignored_stays_ignored() {
+    for (name, number) in [("HUP", 1), ("INT", 2), ("TERM", 15)] {
+        let folder = scratch(&format!("ignored-{name}"));
+        let out = folder.join("out");
+        let mut child = Command::new("env")
+            .args([&format!("--ignore-signal={name}"), env!("CARGO_BIN_EXE_wheelrail"), "run"])
+            .arg(scene_file(&folder, 0.03))
+            .arg("--out")
+            .arg(&out)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("env");
+        let id = child.id().to_string();
+        let ignores = || {
+            let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
+            let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+            let mask = mask.and_then(|digits| u64::from_str_radix(digits.trim(), 16).ok());
+            mask.is_some_and(|mask| mask >> (number - 1) & 1 == 1)
+        };
+        // Before `env` has said so, a signal would end it.
+        while !ignores() && child.try_wait().is_ok_and(|status| status.is_none()) {}
+        while child.try_wait().is_ok_and(|status| status.is_none()) {
+            let _ = Command::new("kill").args([&format!("-{name}"), &id]).stderr(Stdio::null()).status();
+        }
+        assert!(child.wait().is_ok_and(|status| status.success()) && whole(&out) == 0.03, "SIG{name}");
     }
-    assert!(child.wait().is_ok_and(|status| status.success()) && whole(&out) == 0.03);
 }
 
 #[test]
