@@ -70,5 +70,6 @@ mod unequal_wheels;
 mod unmeasured_contacts;
 mod varying_normals;
 mod vtk_files;
+mod whole_rails;
 mod wrong_scenes;
 mod yawed_patches;

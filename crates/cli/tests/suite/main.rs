@@ -55,3 +55,5 @@ mod programs;
 mod run_cli;
 mod sweep_cli;
 mod table_cli;
+#[path = "../../../../tests/suite/whole_rails.rs"]
+mod whole_rails;

@@ -6,6 +6,10 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 use tempfile::TempDir;
+use wheelrail::internal::Random;
+
+use crate::campaign::scenes;
+use crate::whole_rails::{Scan, built_in, drawn_at_random, motion};
 
 fn measure(folder: &Path, arguments: &[&str]) -> Output {
     let binary = env!("CARGO_BIN_EXE_wheelrail");
@@ -323,6 +327,66 @@ fn a_nominal_file_takes_the_options_that_its_own_leaves_open() {
     assert!(asked.status.code() == Some(2) && complaint.contains("--mirror"), "{complaint}");
     // A built-in nominal has no question.
     text(folder.path(), &[&file, "--mirror", "--nominal", "60E1"], 0);
+}
+
+/// The text of points, none nearer to the one before than `nearest` \[mm\].
+fn points(all: &[[f64; 2]], nearest: f64) -> String {
+    let mut last: Option<[f64; 2]> = None;
+    let mut text = String::new();
+    for at in all {
+        if last.is_none_or(|last| (last[0] - at[0]).hypot(last[1] - at[1]) > nearest) {
+            text += &format!("{:.5} {:.5}\n", at[0], at[1]);
+            last = Some(*at);
+        }
+    }
+    text
+}
+
+/// Random scans of one side against a file of the whole rail: fitted by the web to what moved them, with the wear that they have, or
+/// refused with a finding.
+#[test]
+fn a_scan_of_one_side_is_fitted_by_the_web_of_a_nominal_file() {
+    let count = scenes().div_ceil(4);
+    let (mut fitted, mut wrong) = (0, Vec::new());
+    for number in 0..count {
+        let mut random = Random::stream(6507, number);
+        let name = *random.pick(&["60E1", "UIC60", "", ""]);
+        let outline = if name.is_empty() { drawn_at_random(&mut random) } else { built_in(name).unwrap() };
+        let scan = Scan::random(&mut random);
+        let folder = TempDir::new().unwrap();
+        let worn: Vec<[f64; 2]> = outline.iter().map(|at| scan.worn(*at)).collect();
+        let scanned = scan.points(&outline, &mut random);
+        for (file, all) in [("whole.txt", &outline), ("worn.txt", &worn), ("scan.txt", &scanned)] {
+            fs::write(folder.path().join(file), points(all, 0.18)).unwrap();
+        }
+        let options = ["--side", "rail", "--mirror", "false", "--flip-z", "false", "--nominal", "whole.txt"];
+        let w1 = |file, align| {
+            let text = text(folder.path(), &[&[file, "--align", align, "--json"], &options[..]].concat(), 0);
+            let row = serde_json::from_str::<Vec<Value>>(&text).unwrap().swap_remove(0);
+            [row["w1_mm"].as_f64(), row["w1_mm_if_off"].as_f64()]
+        };
+        let said = text(folder.path(), &[&["scan.txt", "--align", "web"], &options[..]].concat(), 0);
+        let by_web = said.lines().find(|line| line.contains("alignment: web"));
+        let Some(found) = by_web.and_then(motion) else {
+            if !said.contains("finding: ") {
+                wrong.push(format!("{number}: {said}"));
+            }
+            continue;
+        };
+        fitted += 1;
+        let off = [0, 1, 2].map(|k| (found[k] - scan.motion[k]).abs());
+        let wear = w1("scan.txt", "web").into_iter().chain(w1("worn.txt", "none")).collect::<Vec<_>>();
+        let kept = match wear[..] {
+            [Some(own), if_off, Some(exact), _] => if_off.is_some_and(|off| (own - exact).abs() <= 3.0 * off),
+            _ => true,
+        };
+        // The origin lies as far from the web as the top does: a turn moves it.
+        if !kept || off[2] > 0.1 || off[0].max(off[1]) > 0.3 {
+            wrong.push(format!("{number}: {off:?} {wear:?} {scan:?}\n{said}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong of {count}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(10 * fitted >= 8 * count, "{fitted} of {count} fitted");
 }
 
 #[test]
