@@ -7,7 +7,7 @@ use super::cell::{BREAK, Beginning};
 use super::state::{Sampler, State};
 use crate::error::{Error, ErrorKind, Result, in_order};
 use crate::numerics::interval::Interval;
-use crate::search::WheelsetOnTrack;
+use crate::search::{Roll, WheelsetOnTrack};
 
 /// Distance of the displacements \[mm\] between which breaks are looked for.
 const STEP: f64 = 0.02;
@@ -80,6 +80,20 @@ pub(super) fn row(system: &WheelsetOnTrack, asked: &Asked, yaw: f64, range: Inte
     Ok(BreakRow { yaw, ends, breaks })
 }
 
+/// Lists where the roll at which both wheels touch ends over a range of displacements \[mm\] under a yaw \[rad\], in ascending order:
+/// displacement \[mm\] and jump of the roll \[rad\], + where it grows. Contact goes on at another roll beyond. Cost: some searches every
+/// 0.02 mm, and at each hop and joint on the way.
+///
+/// # Errors
+/// The errors of [`build`](super::build) but for those about tolerances.
+pub fn roll_ends(system: &WheelsetOnTrack, yaw: f64, range: Interval) -> Result<Vec<[f64; 2]>> {
+    let asked =
+        Asked { lateral: range, yaw: Interval::of(yaw), roll: Roll::Solve, tolerance: STEP, pressed: None };
+    let found = row(system, &asked, yaw, range)?.breaks;
+    let end = |states: &Break| Some([laterals(states).middle(), states[0].turned(&states[1])?]);
+    Ok(found.iter().filter_map(end).collect())
+}
+
 fn no_range() -> Error {
     Error::new("table: lateral", "no range", "FROM < TO", "correct it")
 }
@@ -133,7 +147,7 @@ pub(super) fn divide(
     let mut ends = false;
     if let Some(Interval { low, high }) = sampler.handover(from, to) {
         let (before, after) = (sampler.near(low, within, from)?, sampler.near(high, within, to)?);
-        ends = before.turned(&after);
+        ends = before.turned(&after).is_some();
         if before.topology == from.topology && after.topology == to.topology && !ends {
             divide(sampler, from, &before, breaks)?;
             breaks.push([before.clone(), after.clone()]);

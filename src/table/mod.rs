@@ -21,6 +21,7 @@ mod tree;
 
 pub use about::About;
 pub use asked::{Asked, Pressed};
+pub use breaks::roll_ends;
 pub use build::build;
 pub use cell::{BREAK, Beginning, COEFFICIENTS, Cell, Lacks, YAW_COEFFICIENTS};
 pub use contact_table::ContactTable;

@@ -206,11 +206,11 @@ impl State {
         safe(self, inward) && safe(other, -inward)
     }
 
-    /// Tells whether the wheelset has rolled over from another state at nearly the same displacement, so that one roll at which both wheels
-    /// touch has ended in between.
-    pub fn turned(&self, other: &Self) -> bool {
-        let both = self.lowest.as_ref().zip(other.lowest.as_ref());
-        both.is_some_and(|(own, other)| (own.roll() - other.roll()).abs() > TURNED)
+    /// Returns by how much the wheelset has rolled over on the way to another state at nearly the same displacement \[rad\], where one roll at
+    /// which both wheels touch has ended in between; `None` where it goes on.
+    pub fn turned(&self, other: &Self) -> Option<f64> {
+        let jump = other.lowest.as_ref()?.roll() - self.lowest.as_ref()?.roll();
+        (jump.abs() > TURNED).then_some(jump)
     }
 
     /// Returns the largest distance of a place of contact from that of another state, along the profiles' abscissae \[mm\].

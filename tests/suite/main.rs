@@ -54,6 +54,7 @@ mod referee;
 mod reference_values;
 mod reference_yawed;
 mod report;
+mod roll_ends;
 mod rollers;
 mod slices;
 mod smoothing;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, counted, folder_of, print};
 use crate::range::interval;
-use wheelrail::case::{TABLE_FOLDER, table as tabulate, write_table};
+use wheelrail::case::{TABLE_FOLDER, roll_end, table as tabulate, write_table};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::Folder;
 use wheelrail::scene;
@@ -95,12 +95,6 @@ fn remarks(table: &ContactTable) -> Vec<String> {
             )
         });
     let middle = table.about().yaw.at(0.5);
-    let ends = table.roll_jumps(middle).into_iter().map(|[lateral, jump]| {
-        format!(
-            "the roll jumps by {:.3} mrad at {lateral:.6} mm{under}: the one at which both wheels touch ends there, as on a steep flange, and \
-             they touch at another one beyond",
-            1e3 * jump
-        )
-    });
+    let ends = table.roll_jumps(middle).into_iter().map(|end| roll_end(end, under));
     missing.chain(over).chain(ends).collect()
 }

@@ -7,8 +7,8 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use wheelrail::case::{
-    ApproachBy, COLUMNS, ColumnArray, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, SweepColumns,
-    Tally, curves, doubts_of_conicities,
+    ApproachBy, COLUMNS, ColumnArray, ContactDoubts, DoubtSet, MOST_DRAWN, RollEnds, SideLandmarks,
+    SweepColumns, Tally, curves, doubts_of_conicities,
 };
 use wheelrail::search::{
     ONE_CONTACT, ParallelSweep, Position, Selection, TrackSide, WheelsetOnTrack, conicity_over,
@@ -18,6 +18,9 @@ use crate::arrays::values;
 use crate::errors::{OrRaise, say};
 use crate::long::{Watch, watched};
 use crate::positions::Positions;
+
+/// What to do where the roll ends.
+pub(crate) const ROLL_ENDS: &str = "interpolate between rows of one side of it only";
 
 /// What is asked of every position.
 pub(crate) struct AskedOfSweep {
@@ -39,42 +42,50 @@ pub(crate) fn sweep<'py>(
     let AskedOfSweep { within, conicity, ellipses } = asked;
     let count = positions.count;
     let radius = move |side| radii[usize::from(side == TrackSide::Right)];
-    let (columns, tally, doubts) = watched(py, progress.map(|shown| (shown, "positions")), move |watch| {
-        watch.at(0, positions.count);
-        let positions = listed(&positions, watch)?;
-        let conicity = if conicity { conicity_over(&system, &positions, &mut |_, _| {})? } else { None };
-        let selection = Selection { within, apart: ONE_CONTACT };
-        let doubts = match &conicity {
-            Some(table) => doubts_of_conicities(&system, table, &positions, &landmarks, radius)?,
-            None => Vec::new(),
-        };
-        let conicity = conicity.as_ref();
-        let sweep = ParallelSweep { system: &system, selection, conicity, positions: &positions };
-        let mut all = (SweepColumns::default(), Tally::default(), doubts);
-        all.0.reserve(2 * positions.len());
-        sweep.blocks(
-            |(columns, tally): &mut (SweepColumns, Tally), number, rows| {
-                let push =
-                    |(row, doubts): &(&_, ContactDoubts)| columns.push(number, row, ellipses, doubts.kinds());
-                tally.add(landmarks.of_rows(rows).inspect(push));
-                watch.go_on()
-            },
-            |done, chunks: Vec<(SweepColumns, Tally)>| {
-                for (columns, tally) in &chunks {
-                    all.0.extend(columns);
-                    all.1.join(tally);
-                }
-                watch.at(done, positions.len());
-                Ok(true)
-            },
-        )?;
-        Ok(all)
-    })?;
+    let (columns, tally, doubts, ends) =
+        watched(py, progress.map(|shown| (shown, "positions")), move |watch| {
+            watch.at(0, positions.count);
+            let positions = listed(&positions, watch)?;
+            let conicity = if conicity { conicity_over(&system, &positions, &mut |_, _| {})? } else { None };
+            let selection = Selection { within, apart: ONE_CONTACT };
+            let doubts = match &conicity {
+                Some(table) => doubts_of_conicities(&system, table, &positions, &landmarks, radius)?,
+                None => Vec::new(),
+            };
+            let conicity = conicity.as_ref();
+            let sweep = ParallelSweep { system: &system, selection, conicity, positions: &positions };
+            let mut all = (SweepColumns::default(), Tally::default(), RollEnds::default());
+            all.0.reserve(2 * positions.len());
+            sweep.blocks(
+                |(columns, tally, ends): &mut (SweepColumns, Tally, RollEnds), number, rows| {
+                    let push = |(row, doubts): &(&_, ContactDoubts)| {
+                        columns.push(number, row, ellipses, doubts.kinds())
+                    };
+                    tally.add(landmarks.of_rows(rows).inspect(push));
+                    ends.add(&positions[number], rows);
+                    watch.go_on()
+                },
+                |done, chunks: Vec<(SweepColumns, Tally, RollEnds)>| {
+                    for (columns, tally, ends) in &chunks {
+                        all.0.extend(columns);
+                        all.1.join(tally);
+                        all.2.join(ends);
+                    }
+                    watch.at(done, positions.len());
+                    Ok(true)
+                },
+            )?;
+            let (columns, tally, ends) = all;
+            Ok((columns, tally, doubts, ends.lines(&system, || watch.go_on())?))
+        })?;
     for doubt in &doubts {
         say(py, "conicity", doubt, "see `wheelrail.conicity`")?;
     }
     if let Some(line) = tally.line(count, radius) {
         say(py, "contacts", &line, "the column `doubt` says where")?;
+    }
+    for end in &ends {
+        say(py, "roll", end, ROLL_ENDS)?;
     }
     let table = py.import("wheelrail._table")?.getattr("Table")?;
     table.call1((arrays_of(py, columns)?,))

@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use numpy::PyArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use wheelrail::case::{self, TABLE_FOLDER, write_table};
+use wheelrail::case::{self, TABLE_FOLDER, roll_end, write_table};
 use wheelrail::export::table_wrp;
 use wheelrail::files::{Folder, read_text};
 use wheelrail::table::Beginning;
 use wheelrail::{Error, Interval, scene};
 
 use crate::arrays::{unset, values};
-use crate::errors::{OrRaise, exception};
+use crate::errors::{OrRaise, exception, say};
 use crate::long::{shared, waited};
+use crate::sweep::ROLL_ENDS;
 
 /// Largest table that is read \[bytes\].
 const LARGEST: usize = 1 << 30;
@@ -63,6 +64,15 @@ pub(crate) fn table(
         }
         Ok(made)
     })?;
+    let ends = made.roll_jumps(made.about().yaw.middle());
+    for end in ends {
+        say(
+            py,
+            "roll",
+            &roll_end(end, if made.about().over_yaw() { " under some yaws" } else { "" }),
+            ROLL_ENDS,
+        )?;
+    }
     Ok(ContactTable { table: made })
 }
 

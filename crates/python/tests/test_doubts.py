@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import ROOT
 
 import wheelrail as wr
 
@@ -101,3 +102,12 @@ def test_a_scene_is_doubted_as_by_the_command_line() -> None:
     found = doubts(lambda: cases.append(wr.Case.from_dict(scene)))
     assert found.keys() == {"load", "modulus"}
     assert sorted(found.values()) == sorted(cases[0].warnings)
+
+
+def test_a_sweep_and_a_table_say_where_the_roll_ends() -> None:
+    scene = ROOT / "tests/defects/table-fold-of-roll.toml"
+    case = wr.Case(scene)
+    calls: list[Callable[[], object]] = [lambda: case.sweep(np.arange(4.6, 4.7, 0.01)), lambda: wr.table(scene, (4.6, 4.7))]
+    for call in calls:
+        assert re.search(r"the roll jumps by -3\.0\d\d mrad at 4\.6776\d\d mm", doubts(call)["roll"])
+    assert "roll" not in doubts(lambda: case.sweep(np.arange(4.6, 4.67, 0.01)))

@@ -166,8 +166,13 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<Outcome> {
         progress.at("page");
         file.put(&curves::page(&table, &swept.drawn, &case)?.html())?;
     }
+    progress.at("ends of the roll");
+    let ends = swept.roll_ends.lines(system, || Ok(()))?;
     outputs.commit()?;
     drop(progress);
+    for end in ends {
+        complain(&format!("sweep: {end}"));
+    }
     if let Some(line) = swept.doubts.line(table.positions.len(), radius) {
         complain(&format!("sweep: {line}"));
     }

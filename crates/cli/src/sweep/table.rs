@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::super::progress::Progress;
-use wheelrail::case::{ApproachBy, ContactDoubts, DoubtSet, MOST_DRAWN, SideLandmarks, SweepColumns, Tally};
+use wheelrail::case::{
+    ApproachBy, ContactDoubts, DoubtSet, MOST_DRAWN, RollEnds, SideLandmarks, SweepColumns, Tally,
+};
 use wheelrail::error::Result;
 use wheelrail::search::{Conicity, ParallelSweep, Position, Selection, WheelsetOnTrack};
 
@@ -29,6 +31,8 @@ pub(super) struct SweptChunks {
     text: String,
     /// The doubts of all positions.
     pub doubts: Tally,
+    /// Where the roll may end between positions.
+    pub roll_ends: RollEnds,
     /// The contacts of the positions that are drawn, which are numbered among themselves.
     pub drawn: SweepColumns,
 }
@@ -55,7 +59,7 @@ impl SweepTable<'_> {
         };
         // One position at a time becomes columns, and these text: threads share the work.
         let make = |chunk: &mut SweptChunks, position: usize, rows: &[_]| {
-            let SweptChunks { columns, text, doubts, drawn } = chunk;
+            let SweptChunks { columns, text, doubts, roll_ends, drawn } = chunk;
             columns.clear();
             let push = |(row, found): &(&_, ContactDoubts)| {
                 columns.push(position, row, self.ellipses, found.kinds());
@@ -64,12 +68,14 @@ impl SweepTable<'_> {
                 }
             };
             doubts.add(self.landmarks.of_rows(rows).inspect(push));
+            roll_ends.add(&self.positions[position], rows);
             columns.append_csv(text);
             Ok(())
         };
         sweep.blocks(make, |done, chunks: Vec<SweptChunks>| {
             for chunk in &chunks {
                 swept.doubts.join(&chunk.doubts);
+                swept.roll_ends.join(&chunk.roll_ends);
                 swept.drawn.extend(&chunk.drawn);
             }
             let wanted = sink(&chunks.iter().map(|chunk| chunk.text.as_str()).collect::<String>())?;

@@ -252,3 +252,17 @@ fn a_sweep_ends_with_its_reader() {
     drop(reader);
     assert_eq!(sweep.wait().unwrap().code(), Some(0), "still at work");
 }
+
+/// As a table does, a sweep says where the one roll ends, once, whatever its step; on one side of it nothing.
+#[test]
+fn where_the_roll_ends_is_said() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/defects/table-fold-of-roll.toml");
+    let folder = TempDir::new().unwrap();
+    for (range, ends) in [("4.6:4.7:0.01", 1), ("4.6:4.7:0.1", 1), ("-6:6:1", 2), ("4:4.67:0.01", 0)] {
+        let output = sweep(folder.path(), &[scene, "--lateral", range]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        let lines: Vec<&str> = said.lines().filter(|line| line.contains("the roll jumps by -3.0")).collect();
+        assert_eq!(lines.len(), ends, "{range}: {said}");
+        assert!(lines.iter().all(|line| line.contains("4.67764")), "{range}: {said}");
+    }
+}
