@@ -164,7 +164,9 @@ LONG = {
 }
 
 PROGRAM = """
-import sys, time, numpy as np, wheelrail as wr
+import signal, sys, time, numpy as np, wheelrail as wr
+# What begins these tests may ignore Ctrl-C, and its children then do.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 EXAMPLES = sys.argv[2]
 pair = wr.Pair(wr.rail('60E1').rotated('1:40'), wr.wheel('S1002'), 460.0)
 distances = dict(gauge=1435.0, back_to_back=1360.0, flange_back_x=-70.0)
