@@ -33,6 +33,8 @@ pub(super) struct Rivals {
     pub better: Option<String>,
     /// Whether it fits nearly all of the curve, so that the nominal is another.
     pub is_nominal: bool,
+    /// Whether wear explains all that is off the nominal: nothing of the curve lies outside of it.
+    pub is_worn: bool,
 }
 
 /// Finds the built-in profiles that fit over as great a length as the nominal or more; `None` if the nominal fits nearly all.
@@ -57,7 +59,14 @@ pub(super) fn rivals(nominal: &Nominal, curve: &MarkedCurve, side: Side, align: 
         let profile = built_in(name)?;
         Some((of(&profile)?, name, profile))
     });
-    let mut others: Vec<_> = others.filter(|other| other.0.length >= fits - AS_LONG).collect();
+    // Wear takes metal away: what lies outside of a profile was never worn from it.
+    let outside = |of: &FittedMotion| match side {
+        Side::Rail => of.above,
+        Side::Wheel => of.near - of.length - of.above,
+    };
+    let own_outside = own.as_ref().map_or(f64::INFINITY, outside);
+    let is_as_good = |of: &FittedMotion| of.length >= fits - AS_LONG && outside(of) <= own_outside + AS_LONG;
+    let mut others: Vec<_> = others.filter(|other| is_as_good(&other.0)).collect();
     let longest = others.iter().map(|other| other.0.length).fold(0.0, f64::max);
     let as_long = others.iter().filter(|other| other.0.length >= longest - AS_LONG);
     let (best, name, _) = as_long.min_by(|a, b| a.0.rms.total_cmp(&b.0.rms))?;
@@ -73,5 +82,5 @@ pub(super) fn rivals(nominal: &Nominal, curve: &MarkedCurve, side: Side, align: 
     let is_nominal = better.is_some() && best.length >= NEARLY_ALL * length;
     others.retain(|(_, name, _)| *name != nominal.profile.name);
     let all = others.into_iter().map(|(fit, _, profile)| Rival { profile, motion: fit.motion }).collect();
-    Some(Rivals { all, better, is_nominal })
+    Some(Rivals { all, better, is_nominal, is_worn: own_outside <= AS_LONG })
 }
