@@ -57,7 +57,7 @@ struct Local {
 }
 
 impl NoisyPoints {
-    /// Takes the ends of a profile's segments as points, and finds their noise. A drawing has too few of them to be noisy.
+    /// Takes the ends of a profile's segments as points, and finds their noise, that from which a curve was smoothed included. A drawing has too few of them to be noisy.
     pub fn new(profile: &Profile) -> Self {
         let mut own = Self::default();
         let (mut dropped, mut before) = (false, false);
@@ -86,7 +86,8 @@ impl NoisyPoints {
         // The point itself draws its parabola nearer.
         let free = |count: usize| (1.0 - 3.1 / count as f64).max(0.1).sqrt();
         let all = found.iter().zip(counts).map(|(local, count)| local.across.abs() / free(count)).collect();
-        own.sigma = NORMAL * median(all);
+        // The noise of the points of a smoothed curve does not show in it.
+        own.sigma = (NORMAL * median(all)).max(profile.noise());
         if own.sigma < NO_NOISE {
             own.sigma = 0.0;
         }
