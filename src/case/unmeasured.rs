@@ -54,14 +54,9 @@ impl Bridges {
     }
 }
 
-/// Finds a bridge at C, or in the part of the patch that holds C; in any part where none does.
+/// Finds a bridge at C, or in any part of the patch: pressures of one part are those of all.
 pub(super) fn bridge_in_contact(placement: &Placement, patch: Option<&Patch>) -> Option<BridgeInContact> {
     let parts: &[Component] = patch.map_or(&[], |patch| &patch.components);
-    let at_contact = |part: &&Component| placement.is_at_contact() && part.extent().contains(0.0, 0.0);
-    let own: Vec<&Component> = match parts.iter().find(at_contact) {
-        Some(part) => vec![part],
-        None => parts.iter().collect(),
-    };
     let in_contact = |body: &Body, segment: &Segment| {
         let ends = [segment.start(), segment.end()];
         let seen = ends.map(|end| body.contact_frame().inverse_transform_point(&[end.x, end.z].into()));
@@ -69,7 +64,7 @@ pub(super) fn bridge_in_contact(placement: &Placement, patch: Option<&Patch>) ->
         let facing = (body.section().height(middle.x) - middle.y).abs() <= (seen[1] - seen[0]).norm();
         let [low, high] = [seen[0].x.min(seen[1].x), seen[0].x.max(seen[1].x)];
         let at_c = placement.is_at_contact() && low <= ROUNDING && high >= -ROUNDING;
-        facing && (at_c || own.iter().any(|part| part.xi.low < high && part.xi.high > low))
+        facing && (at_c || parts.iter().any(|part| part.xi.low < high && part.xi.high > low))
     };
     let bodies = [(Side::Rail, placement.rail()), (Side::Wheel, placement.wheel())];
     let swept =

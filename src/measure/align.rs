@@ -242,8 +242,8 @@ pub(super) fn onto(nominal: &Profile, align: Align, step: f64) -> MarkedCurve {
     MarkedCurve::drawn(whole.as_ref().unwrap_or(nominal), step)
 }
 
-/// Fits a curve to another by the parts that wear spares, or by the web, then by all that fits, from all starts; returns what fits over
-/// the greatest length.
+/// Fits a curve to another as to a nominal: by the parts that wear spares, or by the web, whichever start fits them best, then by all that
+/// fits. Of a worn head more may fit where it is shifted.
 pub(super) fn consensus(
     measured: &MarkedCurve,
     onto: &MarkedCurve,
@@ -255,8 +255,8 @@ pub(super) fn consensus(
     let (parts, _) = parts(onto, side, by, &MeasureOptions::default());
     let fit = NominalFit { measured, nominal: onto, parts: &parts, least_part: LEAST_OF_BOTH };
     let all = by_parts(&fit, side, is_web).into_iter().flatten();
-    let fits = all.filter_map(|by_parts| fit.of_all(by_parts, 0.5 * FITS.high).ok());
-    fits.max_by(|a, b| a.length.total_cmp(&b.length))
+    let best = all.min_by(|a, b| a.rms.total_cmp(&b.rms))?;
+    fit.of_all(best, 0.5 * FITS.high).ok()
 }
 
 /// Fits a curve by parts from all first guesses. Of a web some parts may be off the nominal: it is fitted by those that are not.

@@ -61,8 +61,16 @@ impl MarkedCurve {
 
     /// Returns the curve as it may be measured once more, in the axes of its points; `None` for points without noise.
     pub fn again(&self, deviates: &mut Deviates) -> Option<Self> {
-        let (marks, unknown) = self.points.again(deviates)?;
-        Some(Self { marks, unknown, points: Arc::clone(&self.points) })
+        Some(self.of_points(self.points.again(deviates)?))
+    }
+
+    /// Returns the curve as its points are smoothed half as far, in their axes; `None` for points without noise.
+    pub fn less_smoothed(&self) -> Option<Self> {
+        Some(self.of_points(self.points.less_smoothed()?))
+    }
+
+    fn of_points(&self, (marks, unknown): (Vec<Mark>, Vec<bool>)) -> Self {
+        Self { marks, unknown, points: Arc::clone(&self.points) }
     }
 
     /// Returns the curve as it lies after its axes are put on `frame`.
@@ -87,6 +95,31 @@ impl MarkedCurve {
     /// Returns the marks up to `last`, with it.
     pub fn up_to(&self, last: usize) -> Self {
         self.part(0..last.saturating_add(1))
+    }
+
+    /// Returns the part about a mark over which a·x + b·z lies in a range, with marks where it ends: a fit over whole marks alone would
+    /// jump wherever one of them comes in.
+    pub fn within(&self, [a, b]: [f64; 2], range: Interval, about: usize) -> Self {
+        let over = |[x, z]: [f64; 2]| a * x + b * z;
+        let inside = |k: usize| range.contains(over([self.marks[k].station.x, self.marks[k].station.z]));
+        let end = |k: usize| {
+            let (near, far) = (self.marks.get(k)?, self.marks.get(k + 1)?);
+            let level = |level: f64| bracketed(|share| over(near.between(far, share)) - level, 0.0, 1.0);
+            let share = level(range.low).or_else(|| level(range.high))?;
+            let [x, z] = near.between(far, share);
+            let station = Station { x, z, ..if share < 0.5 { near.station } else { far.station } };
+            Some(Mark { s: near.s + share * (far.s - near.s), station, ..*near })
+        };
+        let first = (0..about).rfind(|k| !inside(*k));
+        let last = (about..self.marks.len()).find(|k| !inside(*k)).unwrap_or(self.marks.len());
+        let mut own = self.part(first.map_or(0, |k| k + 1)..last);
+        if let Some((k, mark)) = first.and_then(|k| Some((k, end(k)?))) {
+            own.marks.insert(0, mark);
+            own.unknown.insert(0, self.unknown[k]);
+        }
+        own.marks.extend(last.checked_sub(1).and_then(end));
+        own.unknown.resize(own.marks.len(), false);
+        own
     }
 
     /// Returns the curve with marks at least `apart` \[mm\] from each other, without those in a gap.
@@ -165,7 +198,8 @@ impl MarkedCurve {
         let unknown = [best.checked_sub(1), Some(best)].into_iter().flatten().any(|k| self.unknown[k]);
         let at = |mark: usize, [x, z]: [f64; 2]| CurvePoint { x, z, mark, unknown };
         let mut found = at(best, [own.x, own.z]);
-        for k in best.saturating_sub(1)..=best {
+        // Two marks stand at a joint.
+        for k in best.saturating_sub(2)..=best + 1 {
             let Some(pair) = self.marks.get(k..k + 2) else { continue };
             let level = |share: f64| {
                 // The step balances truncation and rounding of a central difference on a cubic.

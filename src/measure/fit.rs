@@ -58,6 +58,8 @@ pub(super) struct FittedMotion {
     pub length: f64,
     /// Length of what is measured near the parts \[mm\].
     pub near: f64,
+    /// Length \[mm\] of that part of it that does not fit and lies above the nominal.
+    pub above: f64,
 }
 
 /// A place of the measured curve beside its foot on the nominal one.
@@ -194,7 +196,9 @@ impl NominalFit<'_> {
                 let squares = sum(|pair| pair.weight * pair.across * pair.across);
                 let rms = (squares / sum(|pair| pair.weight)).sqrt();
                 let length = sum(|pair| if pair.weight > 0.0 { pair.length } else { 0.0 });
-                return Ok(FittedMotion { motion, rms, length, near: sum(|pair| pair.length) });
+                let above =
+                    sum(|pair| if pair.weight > 0.0 || pair.across < 0.0 { 0.0 } else { pair.length });
+                return Ok(FittedMotion { motion, rms, length, near: sum(|pair| pair.length), above });
             }
         }
         Err(format!(

@@ -71,8 +71,9 @@ impl Measures {
     }
 
     /// Returns how far a value may be off, a third of the largest error: its largest change if the profile is moved by 0.1 mm, or turned
-    /// by 0.1° about the tread at X = 0 or the top of rail, or lies as the fit on the nominal has it; and twice the standard deviation
-    /// that the noise of the points gives it. `None` where such a motion takes the quantity away.
+    /// by 0.1° about the tread at X = 0 or the top of rail (or half and a third of it if twice and three times as far), or lies as the fit
+    /// on the nominal has it, or its points are smoothed half as far; and twice the standard deviation that the noise of the points gives
+    /// it. `None` where a motion by 0.1 takes the quantity away.
     pub fn if_off(&self, quantity: Quantity) -> Option<f64> {
         self.if_off[quantity as usize]
     }

@@ -126,7 +126,7 @@ impl AlignedProfile<'_> {
         let Some((on, nominal)) = &self.on_nominal else { return self };
         let by_all = on.alignment.align == Align::BestFit;
         self.rivals = better::rivals(nominal, curve, self.side, on.alignment.align);
-        let other = self.rivals.as_ref().filter(|rivals| by_all || rivals.is_nominal);
+        let other = self.rivals.as_ref().filter(|rivals| by_all && !rivals.is_worn || rivals.is_nominal);
         if let Some(better) = other.and_then(|rivals| rivals.better.clone()) {
             self.lost = Some(better);
             self.shown = self.on_nominal.take().map(|(on, _)| on);
@@ -188,12 +188,12 @@ impl AlignedProfile<'_> {
     }
 
     /// Returns how far each value is off if the profile lies otherwise: by what instruments and flange backs are off, and as the fit on
-    /// the nominal or on rivals has it; and by the noise of the points.
+    /// the nominal or on rivals has it; by what smoothing takes of the shape; and by the noise of the points.
     fn if_off(&self, curve: &MarkedCurve, options: &MeasureOptions, values: ValueRow) -> ValueRow {
         let mut most = values.map(|value| value.map(|_| 0.0f64));
-        let mut at_most = |moved: ValueRow, gone: bool| {
+        let mut at_most = |moved: ValueRow, share: f64, gone: bool| {
             for ((most, value), moved) in most.iter_mut().zip(values).zip(moved) {
-                let change = moved.zip(value).map(|(moved, value)| (moved - value).abs());
+                let change = moved.zip(value).map(|(moved, value)| share * (moved - value).abs());
                 // A quantity that is gone after the motion has no bound.
                 *most = match change {
                     None if !gone => *most,
@@ -201,25 +201,42 @@ impl AlignedProfile<'_> {
                 };
             }
         };
-        for sign in [-1.0, 1.0] {
-            let along = |x: f64, z: f64| Station { x: sign * x, z: sign * z, ..Station::AXES };
-            let about = |on: &Aligned| turned(pivot(on, self.side, options), sign * TURNED_OFF);
-            at_most(self.moved(&|_, reach| along(OFF + reach, 0.0), options).values(), true);
-            at_most(self.moved(&|_, _| along(0.0, OFF), options).values(), true);
-            at_most(self.moved(&|on, _| about(on), options).values(), true);
+        // Up to three times as far: a place that is the highest after a turn may lie elsewhere, and a value jump.
+        for times in [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0f64] {
+            let along = |x: f64, z: f64| Station { x, z, ..Station::AXES };
+            let about = |on: &Aligned| turned(pivot(on, self.side, options), times * TURNED_OFF);
+            let mut at = |motion: &dyn Fn(&Aligned, f64) -> Station| {
+                at_most(self.moved(motion, options).values(), times.abs().recip(), times.abs() == 1.0);
+            };
+            at(&|_, reach| along(times * OFF + times.signum() * reach, 0.0));
+            at(&|_, _| along(0.0, times * OFF));
+            at(&|on, _| about(on));
         }
         let fit = self.on_nominal.as_ref().map(|(on, _)| on).or(self.shown.as_ref());
         if let (Some(on), Ok(_)) = (fit, &self.own) {
-            at_most(own_values(on, self.side, &on.curve, options).values(), false);
+            at_most(own_values(on, self.side, &on.curve, options).values(), 1.0, false);
         }
         for by_rival in self.by_rivals(curve, options) {
-            at_most(by_rival, false);
+            at_most(by_rival, 1.0, false);
+        }
+        if let Some(less) = curve.less_smoothed() {
+            at_most(self.again(&less, options), 1.0, false);
         }
         let noise = self.noise(curve, options, values);
         for (most, noise) in most.iter_mut().zip(noise) {
             *most = most.map(|most| most + noise);
         }
         most
+    }
+
+    /// Measures another curve of the same points without a new fit.
+    fn again(&self, curve: &MarkedCurve, options: &MeasureOptions) -> ValueRow {
+        let own = alone(curve, self.side, self.on_nominal.is_some(), options);
+        let on_nominal =
+            self.on_nominal.as_ref().map(|(on, nominal)| (on.with(curve.placed(&on.frame)), *nominal));
+        let other =
+            AlignedProfile { side: self.side, own, on_nominal, lost: None, rivals: None, shown: None };
+        other.found(options).values()
     }
 
     /// Returns the share of the points' own noise in the uncertainty of each value: samples of the whole measurement but the fit.
@@ -232,12 +249,7 @@ impl AlignedProfile<'_> {
         let (mut squares, mut counts) = ([0.0; Quantity::ALL.len()], [0u32; Quantity::ALL.len()]);
         for number in 0..SAMPLES {
             let Some(again) = curve.again(&mut Deviates::new(SEED, number)) else { break };
-            let own = alone(&again, self.side, self.on_nominal.is_some(), options);
-            let on_nominal =
-                self.on_nominal.as_ref().map(|(on, nominal)| (on.with(again.placed(&on.frame)), *nominal));
-            let sample =
-                AlignedProfile { side: self.side, own, on_nominal, lost: None, rivals: None, shown: None };
-            let found = sample.found(options).values();
+            let found = self.again(&again, options);
             for (k, (value, found)) in values.into_iter().zip(found).enumerate() {
                 if let Some((value, found)) = value.zip(found) {
                     squares[k] += (found - value).powi(2);

@@ -13,9 +13,8 @@ use crate::numerics::interval::Interval;
 
 /// Half width \[mm\] of the crown whose radius is fitted, that of the MiniProf's own calculation.
 const CROWN: f64 = 10.0;
-/// Height \[mm\] of the gauge face through which a line is fitted, and the least one.
+/// Height \[mm\] of the gauge face through which a line is fitted: through less of a worn face it is another line.
 const FACE: f64 = 10.0;
-const LEAST_FACE: f64 = 3.0;
 /// Depth \[mm\] below the top to which flow is sought: deeper, the fillet to the underside of a head begins.
 const LIP_DEPTH: f64 = 25.0;
 /// Height \[mm\] above the end of a face from which the head's area counts, so that rounding does not take the end away.
@@ -49,13 +48,12 @@ impl<'a> Head<'a> {
         Ok(Self { whole, curve, top, groove })
     }
 
-    /// Returns x of the gauge face at a height \[mm\]: the nearest to the top.
-    fn face(&self, z: f64) -> Result<f64, String> {
+    /// Returns the gauge face at a height \[mm\]: the place nearest to the top.
+    fn face(&self, z: f64) -> Result<CurvePoint, String> {
         let all = self.curve.at_z(z);
         let face = all.iter().rfind(|place| place.mark <= self.top.mark && place.x <= self.top.x);
         face.ok_or_else(|| format!("no gauge face {:.3} mm below the top of rail", self.top.z - z))
             .and_then(|place| place.known().map_err(|why| format!("no gauge face: {why}")))
-            .map(|place| place.x)
     }
 
     /// Returns x of the keeper's face at a height \[mm\]; `None` without a groove.
@@ -124,7 +122,7 @@ pub(super) fn measure(curve: &MarkedCurve, options: &MeasureOptions) -> FoundVal
     found.put(Quantity::SideFaceAngle, side_face_angle(&head, level));
     found.put(Quantity::Lip, head.face(level).and_then(|_| lip(&head)));
     if let Some(keeper) = head.keeper(level) {
-        found.put(Quantity::GrooveWidth, keeper.and_then(|keeper| Ok(head.face(level)? - keeper)));
+        found.put(Quantity::GrooveWidth, keeper.and_then(|keeper| Ok(head.face(level)?.x - keeper)));
         found.put(Quantity::GrooveDepth, head.depth());
     }
     found.put(Quantity::CrownRadius, crown_radius(&head));
@@ -152,7 +150,7 @@ fn lost(found: &mut FoundValues, head: &Head, drawn: &Head, options: &MeasureOpt
     let top = if options.gauge_from == GaugeFrom::Measured { head.top.z } else { drawn.top.z };
     let level = top - options.gauge_level;
     let in_nominal = |why: String| format!("in the nominal: {why}");
-    let w2 = head.face(level).and_then(|x| Ok(x - drawn.face(level).map_err(in_nominal)?));
+    let w2 = head.face(level).and_then(|at| Ok(at.x - drawn.face(level).map_err(in_nominal)?.x));
     found.put(Quantity::W2, w2);
     found.put(Quantity::W3, w3(head, drawn));
     let deepest = head.reach().max(drawn.reach()) + ABOVE_END;
@@ -205,10 +203,10 @@ fn crown_radius(head: &Head) -> Result<f64, String> {
     if curve.has_gap([1.0, 0.0], Interval::symmetric(CROWN) + about) {
         return Err("the points of the crown have a gap".into());
     }
+    let crown = curve.within([1.0, 0.0], Interval::symmetric(CROWN) + about, head.top.mark);
     let inside = || {
-        let all = curve.marks.iter().zip(curve.lengths());
+        let all = crown.marks.iter().zip(crown.lengths());
         all.map(|(mark, weight)| (mark.station.x - about, mark.station.z - head.top.z, weight))
-            .filter(|(x, ..)| x.abs() <= CROWN)
     };
     let Interval { low: from, high: to } = inside().map(|(x, ..)| x).fold(Interval::of(0.0), Interval::with);
     if from > -0.9 * CROWN || to < 0.9 * CROWN {
@@ -233,20 +231,16 @@ fn crown_radius(head: &Head) -> Result<f64, String> {
 
 /// Returns the angle \[deg\] of a line through the gauge face, from `level` \[mm\] down, against the vertical; + if it widens downwards.
 fn side_face_angle(head: &Head, level: f64) -> Result<f64, String> {
-    head.face(level)?;
+    let (range, from) = (Interval::new(level - FACE, level), head.face(level)?.mark);
+    head.face(range.low)?;
     let face = head.curve.up_to(head.top.mark);
-    if face.has_gap([0.0, 1.0], Interval::new(level - FACE, level)) {
+    if face.has_gap([0.0, 1.0], range) {
         return Err("the points of the gauge face have a gap".into());
     }
-    let all = head.curve.marks.iter().zip(head.curve.lengths()).take(head.top.mark);
-    let own: Vec<(f64, f64, f64)> = all
-        .map(|(mark, weight)| (mark.station.x, mark.station.z - level, weight))
-        .filter(|(_, z, _)| *z <= 0.0 && *z >= -FACE)
-        .collect();
-    let depth = own.iter().map(|(_, z, _)| -z).fold(0.0, f64::max);
-    if depth < LEAST_FACE {
-        return Err(format!("the gauge face is measured {depth:.3} mm further down, less than {LEAST_FACE}"));
-    }
+    let face = face.within([0.0, 1.0], range, from);
+    let all = face.marks.iter().zip(face.lengths());
+    let own: Vec<(f64, f64, f64)> =
+        all.map(|(mark, weight)| (mark.station.x, mark.station.z - level, weight)).collect();
     let weight: f64 = own.iter().map(|(.., weight)| weight).sum();
     let mean =
         |of: fn(&(f64, f64, f64)) -> f64| own.iter().map(|place| place.2 * of(place)).sum::<f64>() / weight;

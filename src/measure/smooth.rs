@@ -57,7 +57,7 @@ struct Local {
 }
 
 impl NoisyPoints {
-    /// Takes the ends of a profile's segments as points, and finds their noise. A drawing has too few of them to be noisy.
+    /// Takes the ends of a profile's segments as points, and finds their noise, that from which a curve was smoothed included. A drawing has too few of them to be noisy.
     pub fn new(profile: &Profile) -> Self {
         let mut own = Self::default();
         let (mut dropped, mut before) = (false, false);
@@ -86,7 +86,8 @@ impl NoisyPoints {
         // The point itself draws its parabola nearer.
         let free = |count: usize| (1.0 - 3.1 / count as f64).max(0.1).sqrt();
         let all = found.iter().zip(counts).map(|(local, count)| local.across.abs() / free(count)).collect();
-        own.sigma = NORMAL * median(all);
+        // The noise of the points of a smoothed curve does not show in it.
+        own.sigma = (NORMAL * median(all)).max(profile.noise());
         if own.sigma < NO_NOISE {
             own.sigma = 0.0;
         }
@@ -131,6 +132,13 @@ impl NoisyPoints {
     /// taken as they are.
     pub fn smoothed(&self) -> Option<(Vec<Mark>, Vec<bool>)> {
         (!self.smooth.is_empty()).then(|| self.marks(&self.smooth))
+    }
+
+    /// Returns the marks as [`Self::smoothed`] does, of windows half as wide: the shape that they leave out is a sixteenth of that of
+    /// the whole ones.
+    pub fn less_smoothed(&self) -> Option<(Vec<Mark>, Vec<bool>)> {
+        let narrow = Self { window: 0.5 * self.window, ..self.clone() };
+        (self.sigma > 0.0).then(|| narrow.marks(&narrow.robust()))
     }
 
     /// Measures the smoothed curve once more, with the noise of the points; `None` for points without noise.

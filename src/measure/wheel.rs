@@ -130,10 +130,14 @@ fn hollow(
     if curve.has_gap([1.0, 0.0], Interval::new(face, f64::INFINITY)) {
         return Err("the points of the tread have a gap".into());
     }
-    let (mut top, mut rise) = (tip.z, 0.0f64);
+    let (mut top, mut rise, mut last) = (tip.z, 0.0f64, 0.0);
     for mark in curve.marks.iter().skip(tip.mark + 1) {
         top = top.max(mark.station.z);
-        rise = rise.max(top - mark.station.z);
+        last = top - mark.station.z;
+        rise = rise.max(last);
+    }
+    if last > 0.0 && last >= rise {
+        return Err(format!("Y of the tread still rises where the points end, at X = {end:.3} mm"));
     }
     Ok(rise)
 }

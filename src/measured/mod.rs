@@ -378,7 +378,8 @@ fn drawn(
     if curve.kind != CurveKind::Elements {
         clean::bridges::name(&mut segments, &points, &placed.findings);
     }
-    let profile = Profile::new(name, source, segments)?;
+    let smoothed = curve.noise.filter(|_| curve.cutoff_wavelength.is_some());
+    let profile = Profile::new(name, source, segments)?.with_noise(smoothed.unwrap_or(0.0));
     let record = Record {
         format: placed.format,
         points_read: placed.points_read,

@@ -43,6 +43,8 @@ pub struct Profile {
     /// The larger side of the box around the segments' ends \[mm\].
     #[serde(skip_serializing)]
     extent: f64,
+    /// Standard deviation \[mm\] of the points through which it was smoothed.
+    noise: f64,
 }
 
 /// A profile as it is stored: without what follows from its segments.
@@ -53,13 +55,15 @@ struct Stored {
     segments: Vec<Segment>,
     drawn: Vec<Segment>,
     closings: Vec<Closing>,
+    #[serde(default)]
+    noise: f64,
 }
 
 impl TryFrom<Stored> for Profile {
     type Error = Error;
 
     fn try_from(stored: Stored) -> Result<Self> {
-        let Stored { name, source, segments, drawn, closings } = stored;
+        let Stored { name, source, segments, drawn, closings, noise } = stored;
         let all = segments.iter().chain(&drawn);
         let joints = segments.len().saturating_sub(1);
         let inside = closings.iter().all(|closing| closing.left < joints);
@@ -68,7 +72,7 @@ impl TryFrom<Stored> for Profile {
             return Err(Error::new(name, "a damaged profile", expected, "store it anew"));
         }
         continuity::reject_jumps(&segments, extent(&segments))?;
-        Ok(Self::closed(name, source, [segments, drawn], closings))
+        Ok(Self::closed(name, source, [segments, drawn], closings).with_noise(noise))
     }
 }
 
@@ -103,7 +107,17 @@ impl Profile {
         closings: Vec<Closing>,
     ) -> Self {
         let extent = extent(&segments);
-        Self { name, source, segments, drawn, closings, extent }
+        Self { name, source, segments, drawn, closings, extent, noise: 0.0 }
+    }
+
+    /// Says that the profile was smoothed through points of this standard deviation \[mm\] across it.
+    pub(crate) fn with_noise(self, noise: f64) -> Self {
+        Self { noise, ..self }
+    }
+
+    /// Returns the standard deviation \[mm\] of the points through which the profile was smoothed; 0 for others.
+    pub(crate) fn noise(&self) -> f64 {
+        self.noise
     }
 
     /// Returns the name for titles and pages: of a profile of a file that of the file, without its folders.
@@ -185,6 +199,7 @@ impl Profile {
     fn mapped(&self, image: impl Fn(&Segment) -> Segment) -> Self {
         let chains = [&self.segments, &self.drawn].map(|all| all.iter().map(&image).collect());
         Self::closed(self.name.clone(), self.source.clone(), chains, self.closings.clone())
+            .with_noise(self.noise)
     }
 }
 

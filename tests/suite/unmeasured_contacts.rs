@@ -69,7 +69,8 @@ fn doubts(run: &Run) -> Vec<String> {
 fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
     let drawn = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
     let (mut on, mut away, mut swept) = (0, 0, 0);
-    for seed in 0..campaign::scenes() {
+    // Of 190 a part of the patch that does not hold C lies on them.
+    for seed in (0..campaign::scenes()).chain([190]) {
         let dice = &mut Random::stream(653, seed);
         let offset = dice.between(-4.0, 5.0);
         let plain = run(drawn.clone(), offset)?;
@@ -88,9 +89,12 @@ fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
         let said = doubts(&found);
         let distance = |part: &wheelrail::case::Part| {
             let frame = part.site.contact.placement.rail().contact_frame();
-            let patch = part.site.contact.whole_patch().and_then(wheelrail::Patch::extent).expect("a patch");
-            let [low, high] = patch.xi.ends().map(|xi| frame.translation.x + xi * frame.rotation.re);
-            (scan.x[0] - high).max(low - scan.x[1])
+            let from = |component: &wheelrail::Component| {
+                let [low, high] = component.xi.ends().map(|xi| frame.translation.x + xi * frame.rotation.re);
+                (scan.x[0] - high).max(low - scan.x[1])
+            };
+            let patch = part.site.contact.whole_patch().expect("a patch");
+            patch.components.iter().map(from).fold(f64::INFINITY, f64::min)
         };
         let nearest = found.parts.iter().map(distance).fold(f64::INFINITY, f64::min);
         if nearest < -0.1 {

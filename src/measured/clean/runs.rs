@@ -366,8 +366,14 @@ impl RunSearch<'_> {
     /// Returns whether the path has no step without the vertices between two steps.
     fn joins(&self, s: usize, e: usize) -> bool {
         let (a, b) = (self.steps[s], self.steps[e] + 1);
-        let from = if s > 0 { self.steps[s - 1] + 1 } else { 0 }.max((a + 1).saturating_sub(SIDE));
-        let to = self.steps.get(e + 1).map_or(self.chain.len(), |next| next + 1).min(b + SIDE);
+        // Beside a high step a low one is that step's own: it is a line's end.
+        let high = |step: usize| {
+            let least = LEFT_OVER * self.heights[step].least;
+            move |&&k: &&usize| k.abs_diff(step) > 1 || self.heights[k].least >= least
+        };
+        let last = self.steps[..s].iter().rfind(high(a)).map_or(0, |k| k + 1);
+        let next = self.steps[e + 1..].iter().find(high(b - 1)).map_or(self.chain.len(), |k| k + 1);
+        let (from, to) = (last.max((a + 1).saturating_sub(SIDE)), next.min(b + SIDE));
         let [before, after] = [from..a + 1, b..to].map(|side| Chord::through(&self.chain[side]));
         let [p, q] = [&self.chain[a], &self.chain[b]];
         let onwards = |line: Option<Chord>| line.is_none_or(|line| line.is_along(p, q));

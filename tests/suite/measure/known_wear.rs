@@ -16,6 +16,10 @@ const FINE: f64 = 0.05;
 /// Rounding \[mm\] of what is measured of exact points.
 const EXACT: f64 = 2e-3;
 
+/// Cases that were wrong: crowns whose top lies at the field side, one with two tops, a gauge face and a tread that are cut off, heads
+/// that worn look like narrower ones, and one on a narrower nominal.
+const WERE_WRONG: [u64; 10] = [17, 293, 323, 354, 363, 518, 562, 596, 683, 1007];
+
 /// What is wrong with a profile.
 #[derive(Debug, Clone, Default)]
 struct Faults {
@@ -204,7 +208,7 @@ fn by_hand(points: &[[f64; 2]], side: Side) -> Vec<(Quantity, f64)> {
 
 pub fn campaign(count: u64) -> Result<Tally> {
     let mut tally = Tally::default();
-    for number in 0..count {
+    for number in (0..count).chain(WERE_WRONG) {
         let mut random = Random::stream(65, number);
         let worn = Worn::random(&mut random);
         let exact = worn.exact([0.0, f64::INFINITY])?;

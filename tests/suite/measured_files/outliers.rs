@@ -117,7 +117,8 @@ fn drop_out(points: &mut [[f64; 2]], random: &mut Random) -> Vec<bool> {
 #[test]
 fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
     let (cases, mut silent, mut wrong, mut refused) = (scenes(), 0, 0, 0);
-    for case in 0..cases {
+    // Of 739 a run on a steep face has a low step before its first one.
+    for case in (0..cases).chain([739]) {
         let mut random = Random::stream(651, case);
         let truth = Truth::random(&mut random);
         let noise = if random.below(3) == 0 { 0.0 } else { random.between(0.0, 0.01) };
