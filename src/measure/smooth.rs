@@ -57,7 +57,8 @@ struct Local {
 }
 
 impl NoisyPoints {
-    /// Takes the ends of a profile's segments as points, and finds their noise, that from which a curve was smoothed included. A drawing has too few of them to be noisy.
+    /// Takes the ends of a profile's segments as points, and finds their noise, that from which a curve was smoothed included. A drawing has
+    /// too few of them to be noisy.
     pub fn new(profile: &Profile) -> Self {
         let mut own = Self::default();
         let (mut dropped, mut before) = (false, false);
