@@ -85,7 +85,7 @@ impl Band {
         // A band with a corner next to an end may be as wide there as anywhere.
         let mut width = |xi: f64| {
             let edges = outline.slicer.edges(xi, self.valley(xi));
-            edges.map_or(0.0, |[low, high]| high.eta - low.eta)
+            edges.map_or(0.0, |[low, high]| high - low)
         };
         let mut blunted = |end: f64| {
             let mut near = self.corners.iter().filter(|&&corner| corner != end && !apart(corner, end));
@@ -110,9 +110,7 @@ impl Band {
                     let one = |xi: f64| {
                         let valley = self.valley(xi);
                         let near = outline.slicer.edges_near(xi, valley, extrapolated(&known, xi));
-                        let edges = near.or_else(|| {
-                            outline.slicer.edges(xi, valley).map(|both| both.map(|edge| edge.eta))
-                        });
+                        let edges = near.or_else(|| outline.slicer.edges(xi, valley));
                         let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
                         known = [known[1], halved(xi, [low, high])];
                         [low, high]
@@ -144,10 +142,8 @@ impl Band {
         let middle = self.xi.middle();
         let valley = self.valley(middle);
         let depth = outline.slicer.depth_over(valley, middle).abs();
-        let square: f64 = outline
-            .slicer
-            .edges(middle, valley)
-            .map_or(0.0, |[low, high]| ((high.eta - low.eta) / 2.0).powi(2));
+        let square: f64 =
+            outline.slicer.edges(middle, valley).map_or(0.0, |[low, high]| ((high - low) / 2.0).powi(2));
         if outline.slicer.by_samples.is_some() {
             return [SMOOTH * square; 2];
         }

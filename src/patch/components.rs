@@ -373,7 +373,7 @@ fn reach(outline: &mut Outline<'_>, band: &Band) -> Interval {
     for k in 0..=REACH_SLICES {
         let xi = band.xi.nearest(grading.xi(k as f64 / REACH_SLICES as f64));
         for edge in outline.slicer.edges(xi, band.valley(xi)).into_iter().flatten() {
-            range = range.with(edge.eta);
+            range = range.with(edge);
         }
     }
     range.grown(range.width() / 2.0)

@@ -162,7 +162,7 @@ impl JointTrail<'_, '_> {
     fn feet(&mut self, xi: f64) -> Option<EdgeFeet> {
         let valley = self.band.valley(xi);
         let near = self.slicer.edges_near(xi, valley, extrapolated(&self.known, xi));
-        let edges = near.or_else(|| Some(self.slicer.edges(xi, valley)?.map(|edge| edge.eta)))?;
+        let edges = near.or_else(|| self.slicer.edges(xi, valley))?;
         self.known = [self.known[1], halved(xi, edges)];
         let abscissae = edges.map(|eta| self.slicer.abscissae(xi, eta));
         Some(EdgeFeet { xi, edges, abscissae })
@@ -191,7 +191,7 @@ impl JointTrail<'_, '_> {
     /// Returns the abscissa \[mm\] of the point of one body under one edge at ξ; NaN where there is none.
     fn abscissa(&mut self, xi: f64, side: usize, body: usize) -> f64 {
         let near = self.slicer.edge_near(xi, extrapolated(&self.known, xi), side);
-        let edge = near.or_else(|| Some(self.slicer.edges(xi, self.band.valley(xi))?[side].eta));
+        let edge = near.or_else(|| Some(self.slicer.edges(xi, self.band.valley(xi))?[side]));
         edge.map_or(f64::NAN, |eta| self.slicer.abscissae(xi, eta)[body])
     }
 }

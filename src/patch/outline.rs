@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::in_valleys::circle::{BESIDE, Turned};
-use super::in_valleys::slicer::Edge;
 use super::slice::Slicer;
 use super::window::Window;
 use crate::conformal::Reference;
@@ -42,7 +41,7 @@ impl<'a> Outline<'a> {
 
     /// Returns both ends of the slice at ξ; with skew, of the slice that holds `valley`. Returns `None` outside the patch
     /// or the window.
-    pub(crate) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[Edge; 2]> {
+    pub(crate) fn edges(&mut self, valley: Option<usize>, xi: f64) -> Option<[f64; 2]> {
         let edges = self.slicer.edges(xi, valley)?;
         self.clipped(edges)
     }
@@ -74,15 +73,12 @@ impl<'a> Outline<'a> {
         places
     }
 
-    fn clipped(&self, [mut low, mut high]: [Edge; 2]) -> Option<[Edge; 2]> {
+    fn clipped(&self, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
         let window = self.window.eta;
-        if low.eta < window.low {
-            low = Edge { eta: window.low, ledge: false };
-        }
-        if high.eta > window.high {
-            high = Edge { eta: window.high, ledge: false };
-        }
-        (low.eta <= high.eta).then_some([low, high])
+        // NaN stays.
+        let low = if low < window.low { window.low } else { low };
+        let high = if high > window.high { window.high } else { high };
+        (low <= high).then_some([low, high])
     }
 
     /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
@@ -101,9 +97,8 @@ impl<'a> Outline<'a> {
                 if spot.eta == floor || floor.is_nan() {
                     return in_valleys.depth_at(xi, &spot);
                 }
-                let reached = in_valleys
-                    .edges(xi, valley)
-                    .is_some_and(|[low, high]| low.eta <= floor && floor <= high.eta);
+                let reached =
+                    in_valleys.edges(xi, valley).is_some_and(|[low, high]| low <= floor && floor <= high);
                 if !reached {
                     return f64::INFINITY;
                 }

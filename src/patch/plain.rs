@@ -3,7 +3,6 @@
 
 use super::band::{Band, Turn, steps};
 use super::by_roots::turns::LeastGap;
-use super::in_valleys::slicer::between;
 use super::outline::{End, Outline};
 use super::window::Window;
 use crate::conformal::Reference;
@@ -95,7 +94,7 @@ fn closed(
     let places = [(begin, if beside { from.next_up() } else { from }), (end, to)];
     let sides = places.map(|(end, xi)| {
         let edges = outline.edges(None, xi).filter(|_| end != Some(End::Tip));
-        edges.map_or_else(|| Interval::of(outline.floor(None, xi)), between)
+        edges.map_or_else(|| Interval::of(outline.floor(None, xi)), Interval::from)
     });
     Band::new(Interval::new(from, to), [begin, end], sides, outline.window.eta)
 }

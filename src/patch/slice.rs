@@ -7,9 +7,7 @@ use super::by_roots::ByRoots;
 use super::by_roots::turns::LeastGap;
 use super::by_samples::BySamples;
 use super::divided::lines_reenter;
-use super::in_valleys::slicer::{
-    Edge, InValleys, NEAR_GUESS, STEP_ROUNDINGS, between, newton_from, on_surface,
-};
+use super::in_valleys::slicer::{InValleys, NEAR_GUESS, newton_from, on_surface};
 use super::level::{Level, joints};
 use super::raised::RaisedLanes;
 use crate::conformal::Reference;
@@ -207,11 +205,11 @@ impl<'a> Slicer<'a> {
             Some(in_valleys) => Some(in_valleys.lowest_valley(xi)?),
             None => None,
         };
-        self.edges(xi, valley).map(|edges| Slice { eta: between(edges) })
+        self.edges(xi, valley).map(|edges| Slice { eta: edges.into() })
     }
 
     /// Returns both ends of the slice at ξ; of slices from valleys, of the one that holds `valley`.
-    pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[Edge; 2]> {
+    pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[f64; 2]> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.edges(xi, valley);
         }
@@ -223,7 +221,7 @@ impl<'a> Slicer<'a> {
             return by_roots.edges(xi);
         }
         let edge = self.half(xi)?;
-        Some([Edge { eta: -edge.eta, ..edge }, edge])
+        Some([-edge, edge])
     }
 
     /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess; of slices from valleys, of the one that holds `valley`.
@@ -292,7 +290,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
-    fn half(&mut self, xi: f64) -> Option<Edge> {
+    fn half(&mut self, xi: f64) -> Option<f64> {
         let depth = self.approach - midplane_gap(self.placement, xi);
         if depth.is_nan() || depth < 0.0 {
             return None;
@@ -304,21 +302,20 @@ impl<'a> Slicer<'a> {
 
     /// Returns the edge at the wheel point that lies `depth` \[mm\] above the midplane point at ξ, or at an earlier point where the
     /// surface ends or steps. Returns `None` if η² would exceed `u_max` \[mm²\], and if the wheel has no midplane point at ξ.
-    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<Edge> {
+    fn foot_lifted(&mut self, xi: f64, depth: f64, u_max: f64) -> Option<f64> {
         self.wheel.spans(xi, u_max, &mut self.spans);
-        let half = |foot: SagittaPoint, ledge: bool| Edge { eta: foot.u.max(0.0).sqrt(), ledge };
+        let half = |foot: SagittaPoint| foot.u.max(0.0).sqrt();
         let floor = self.spans.first().filter(|span| span.e.low == 0.0)?.height;
         for span in &self.spans {
             let rise = depth - (span.height - floor);
             let end = span.e.high.is_finite().then(|| self.wheel.point(xi, span, span.e.high));
             if end.is_none_or(|end| end.rise >= rise) {
-                let step = rise < -STEP_ROUNDINGS * f64::EPSILON * (span.height.abs() + floor.abs());
                 let foot = self.wheel.point_with_rise(xi, span, rise.max(0.0), CONTRACTIONS);
-                return Some(half(foot, step));
+                return Some(half(foot));
             }
         }
         let last = self.spans.last().filter(|span| span.u.high < u_max)?;
-        Some(half(self.wheel.point(xi, last, last.e.high), true))
+        Some(half(self.wheel.point(xi, last, last.e.high)))
     }
 
     /// Returns η \[mm\] of the least s at ξ. It is 0 for swept bodies without skew, else the place where s neither rises nor falls

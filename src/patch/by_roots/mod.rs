@@ -14,7 +14,7 @@ use bounds::GapBounds;
 
 use super::divided::opening;
 use super::in_valleys::circle::{FARTHEST_SINE, Turned};
-use super::in_valleys::slicer::{Edge, QUADRATIC, STEP_ROUNDINGS};
+use super::in_valleys::slicer::QUADRATIC;
 use super::level::Level;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
@@ -54,8 +54,6 @@ pub(super) struct ByRoots<'a> {
     farthest: f64,
     /// η \[mm\] at which lines of constant ξ touch the circles of the wheel's ends, or come nearest to that.
     turning: [f64; 2],
-    /// Least step of a surface \[mm\].
-    step: f64,
     /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
     steps: [Vec<Interval>; 2],
 }
@@ -64,14 +62,13 @@ impl<'a> ByRoots<'a> {
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\]; `None` on a rail.
     pub(super) fn new(placement: &'a Placement, approach: f64, level: Level<'a>) -> Option<Self> {
         let opening = opening(placement);
-        let step = STEP_ROUNDINGS * f64::EPSILON * placement.wheel().profile().extent();
         let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
         let crown = level.normal_gap().map(|gap| gap.rail().clone());
         let bounds = GapBounds::new(placement, crown, (approach, opening))?;
         let (skewed, farthest) = (placement.skew() != 0.0, FARTHEST_SINE * placement.rolling_radius());
         let turned = Turned::new(placement);
         let turning = [0, 1].map(|end| turned.touched(end).map_or(0.0, |(place, _)| place.eta));
-        Some(Self { level, bounds, skewed, approach, opening, farthest, turning, step, steps })
+        Some(Self { level, bounds, skewed, approach, opening, farthest, turning, steps })
     }
 
     /// Whether the least gap inside a window of η is that of the midplane of two profiles, whose turns have formulas.
@@ -162,27 +159,25 @@ impl<'a> ByRoots<'a> {
         self.level.gap(xi, eta) - self.approach
     }
 
-    /// Returns both ends of the slice at ξ; `None` outside the patch.
-    pub(super) fn edges(&mut self, xi: f64) -> Option<[Edge; 2]> {
+    /// Returns both ends of the slice at ξ \[mm\]; `None` outside the patch.
+    pub(super) fn edges(&mut self, xi: f64) -> Option<[f64; 2]> {
         let lowest = self.lowest(xi);
         let depth = self.approach - self.level.gap(xi, lowest);
         if depth.is_nan() || depth < 0.0 {
             return None;
         }
-        let upper = self.edge(xi, lowest, (depth / self.opening).sqrt());
-        let mirrored = Edge { eta: -upper.eta, ..upper };
-        let lower =
-            if self.skewed { self.edge(xi, lowest, -(depth / self.opening).sqrt()) } else { mirrored };
-        Some([lower, upper])
+        let reach = (depth / self.opening).sqrt();
+        let upper = self.edge(xi, lowest, reach);
+        Some([if self.skewed { self.edge(xi, lowest, -reach) } else { -upper }, upper])
     }
 
     /// Returns the end of a slice on one side of its lowest place. `reach` \[mm\] is about its distance from there, with the sign of
     /// the side.
-    fn edge(&mut self, xi: f64, lowest: f64, reach: f64) -> Edge {
+    fn edge(&mut self, xi: f64, lowest: f64, reach: f64) -> f64 {
         let approach = self.approach;
         let mut miss = |eta: f64| self.level.gap(xi, eta) - approach;
         if reach == 0.0 {
-            return Edge { eta: lowest, ledge: false };
+            return lowest;
         }
         let (mut near, mut far) = (0.0, reach);
         while miss(lowest + far) < 0.0 {
@@ -192,9 +187,7 @@ impl<'a> ByRoots<'a> {
             far = last_where(|off| !miss(lowest + off).is_nan(), near, far);
         }
         // Without a root the surface ends inside the patch.
-        let eta = lowest + bracketed(|off| miss(lowest + off), near, far).unwrap_or(far);
-        let over = miss(eta).abs();
-        Edge { eta, ledge: over > self.step }
+        lowest + bracketed(|off| miss(lowest + off), near, far).unwrap_or(far)
     }
 
     /// Returns the gap less δ \[mm\] and its slope along η; `None` where a body has no surface.

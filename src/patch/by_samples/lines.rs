@@ -11,7 +11,6 @@
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::divided::lines_divide;
-use crate::patch::in_valleys::slicer::Edge;
 use crate::patch::level::{Level, joints};
 use crate::patch::window::Window;
 use crate::placement::Placement;
@@ -139,10 +138,9 @@ impl<'a> BySamples<'a> {
     }
 
     /// Returns both ends of the slice of a lane at ξ; `None` outside the patch.
-    pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[Edge; 2]> {
-        let edge = |eta: f64| Edge { eta, ledge: false };
+    pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[f64; 2]> {
         let near = self.edges_between(xi, lane);
-        near.or_else(|| self.interval(xi, lane).map(|found| found.eta.ends())).map(|eta| eta.map(edge))
+        near.or_else(|| self.interval(xi, lane).map(|found| found.eta.ends()))
     }
 
     /// Finds both ends of the slice of a lane at ξ near their estimate from the lines on both sides; `None` where they are farther off.

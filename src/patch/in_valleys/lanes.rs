@@ -5,7 +5,7 @@
 //! at which the rail or its raised curve steps. Between two events the intervals persist; at an event they continue, divide or join.
 
 use super::events::{Events, events};
-use super::slicer::{NEAR_GUESS, between};
+use super::slicer::NEAR_GUESS;
 use crate::numerics::interval::Interval;
 use crate::patch::band::{Band, Turn, steps};
 use crate::patch::outline::{End, Outline};
@@ -110,7 +110,7 @@ fn groups(outline: &mut Outline<'_>, xi: f64) -> Vec<ValleyGroup> {
                 groups.push(vec![*valley]);
                 if inside.len() > 1 {
                     let edges = outline.slicer.edges(xi, Some(valley.crease));
-                    reached = edges.map_or(reached, |[_, high]| high.eta + near);
+                    reached = edges.map_or(reached, |[_, high]| high + near);
                 }
             }
         }
@@ -177,7 +177,7 @@ impl LaneWalk<'_, '_> {
     /// Returns the interval of a group at ξ \[mm\]; NaN outside the patch.
     fn interval(&mut self, group: &ValleyGroup, xi: f64) -> Interval {
         let edges = self.outline.edges(group.first().copied(), xi);
-        edges.map_or(Interval::of(f64::NAN), between)
+        edges.map_or(Interval::of(f64::NAN), Interval::from)
     }
 
     /// Returns the sides of the lanes (0) and groups (1) that meet at an event where one interval divides or several join.
@@ -221,7 +221,7 @@ impl LaneWalk<'_, '_> {
     /// Returns the lower (0) or upper (1) edge of a group at ξ \[mm\], near that of its interval next to ξ.
     fn outer(&mut self, group: &ValleyGroup, xi: f64, beside: Interval, side: usize) -> f64 {
         let near = |eta: &f64| (eta - beside[side]).abs() <= NEAR_GUESS * beside.width();
-        let found = self.outline.edges(group.first().copied(), xi).map(|edges| edges[side].eta).filter(near);
+        let found = self.outline.edges(group.first().copied(), xi).map(|edges| edges[side]).filter(near);
         // Where the line only touches the circle of an end, rounding may end the surface there.
         let again = || self.outline.slicer.edge_near(xi, beside.ends(), side);
         let window = self.outline.window.eta;
@@ -263,7 +263,7 @@ impl LaneWalk<'_, '_> {
         let edges = self.outline.edges(valley, at).filter(|_| end != End::Tip);
         let [_, _, lowest] = self.outline.lowest(valley, at);
         let side = match edges {
-            Some(edges) => between(edges),
+            Some(edges) => edges.into(),
             None if end == End::Tip || inside.low.is_nan() => Interval::of(lowest),
             None => inside,
         };

@@ -8,7 +8,6 @@
 use super::circle::BESIDE;
 use super::valleys::{ValleySpot, Valleys};
 use crate::conformal::RailArcLength;
-use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
 use crate::patch::raised::Raised;
 use crate::placement::Placement;
@@ -33,20 +32,6 @@ const NEWTON_ROUNDINGS: f64 = 64.0;
 /// Number of fourfold steps in which a point on the surface is sought next to its end. They reach the square root of
 /// rounding, which is the error where lines of constant ξ only touch the end.
 const NUDGES: i32 = 14;
-
-/// One end of a slice.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Edge {
-    /// η of the end \[mm\].
-    pub(crate) eta: f64,
-    /// Whether the wheel's surface ends or steps here, so that s jumps over δ.
-    pub(in crate::patch) ledge: bool,
-}
-
-/// Returns the interval of η between the ends of a slice \[mm\].
-pub(in crate::patch) fn between([low, high]: [Edge; 2]) -> Interval {
-    Interval::new(low.eta, high.eta)
-}
 
 /// Returns η \[mm\] of one end of a slice by Newton's steps from a guess. `miss` gives the gap less δ \[mm\] and its slope along η. Returns
 /// `None` unless the steps settle no farther than `near` \[mm\] from the guess, and the gap rises in the direction `outward` there.
@@ -152,8 +137,8 @@ impl<'a> InValleys<'a> {
         lowest.map(|(_, k)| k)
     }
 
-    /// Returns both ends of the slice that holds a valley; `None` outside the patch.
-    pub(in crate::patch) fn edges(&mut self, xi: f64, valley: usize) -> Option<[Edge; 2]> {
+    /// Returns both ends of the slice that holds a valley \[mm\]; `None` outside the patch.
+    pub(in crate::patch) fn edges(&mut self, xi: f64, valley: usize) -> Option<[f64; 2]> {
         let spot = self.spot(valley, xi);
         let depth = -self.depth_at(xi, &spot);
         if depth.is_nan() || depth < 0.0 {
@@ -165,9 +150,8 @@ impl<'a> InValleys<'a> {
         let radius = self.placement.rolling_radius();
         let reach = (2.0 * (2.0 * radius * depth).sqrt()).max(STEP_ROUNDINGS * f64::EPSILON * radius);
         let upper = self.outward(xi, spot.eta, reach, &mut stops);
-        let mirrored = Edge { eta: -upper.eta, ..upper };
         let lower = if self.valleys.is_mirrored(valley) {
-            mirrored
+            -upper
         } else {
             self.outward(xi, spot.eta, -reach, &mut stops)
         };
@@ -185,12 +169,12 @@ impl<'a> InValleys<'a> {
     }
 
     /// Returns the end of the slice on one side of its lowest point.
-    fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> Edge {
+    fn outward(&mut self, xi: f64, lowest: f64, reach: f64, stops: &mut [f64]) -> f64 {
         let beside = (BESIDE * self.placement.rolling_radius()).copysign(reach);
         let [depth, mut from] = on_surface(self.placement, lowest, |eta| self.raised.gap(xi, eta));
         let beyond = self.raised.gap(xi, from + beside);
         if depth.is_nan() || (from != lowest && (beyond.is_nan() || beyond >= 0.0)) {
-            return Edge { eta: from, ledge: true };
+            return from;
         }
         let away = |stop: &f64| (stop - lowest) * reach.signum();
         stops.sort_by(|a, b| away(a).total_cmp(&away(b)));
@@ -210,7 +194,7 @@ impl<'a> InValleys<'a> {
     }
 
     /// Returns the end of the slice between `from` and `limit`, over which s only rises.
-    fn edge(&mut self, xi: f64, from: f64, mut reach: f64, limit: f64) -> Edge {
+    fn edge(&mut self, xi: f64, from: f64, mut reach: f64, limit: f64) -> f64 {
         let clipped = |reach: f64| if (from + reach - limit) * reach > 0.0 { limit } else { from + reach };
         let (mut far, mut there) = (clipped(reach), self.raised.gap(xi, clipped(reach)));
         // The search ends at the latest where the column leaves the wheel.
@@ -219,22 +203,20 @@ impl<'a> InValleys<'a> {
             far = clipped(reach);
             there = self.raised.gap(xi, far);
         }
-        if there.is_nan() { self.end_between(xi, from, far) } else { self.level_between(xi, from, far) }
+        if there.is_nan() {
+            self.end_between(xi, from, far)
+        } else {
+            self.level(xi, from, far).unwrap_or(from)
+        }
     }
 
     /// Returns the end of the slice if the surface ends between `from` and `off`.
-    fn end_between(&mut self, xi: f64, from: f64, off: f64) -> Edge {
+    fn end_between(&mut self, xi: f64, from: f64, off: f64) -> f64 {
         let end = self.surface_end(xi, from, off);
         if self.raised.gap(xi, end) < 0.0 {
-            return Edge { eta: end, ledge: true };
+            return end;
         }
-        self.level_between(xi, from, end)
-    }
-
-    fn level_between(&mut self, xi: f64, from: f64, far: f64) -> Edge {
-        let eta = self.level(xi, from, far).unwrap_or(from);
-        let step = STEP_ROUNDINGS * f64::EPSILON * self.placement.wheel().profile().extent();
-        Edge { eta, ledge: self.raised.gap(xi, eta).abs() > step }
+        self.level(xi, from, end).unwrap_or(from)
     }
 
     /// Returns η with s(ξ, η) = δ between `from` and `far`, where s − δ must have different signs.
