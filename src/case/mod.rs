@@ -87,7 +87,7 @@ pub use places::{approach_under_load, contacts, find};
 pub(crate) use polylines::polyline;
 pub use pressure::{EdgeOnRail, OnGrid, PartPressure};
 pub use profile_view::{about_profile, profile_picture};
-pub use roll_ends::{RollEnds, roll_end};
+pub use roll_ends::{RollEnds, table_roll_ends};
 pub use run::{Part, Run, SILENT, Tell};
 pub use site::{Site, sites};
 pub use sweep_view::sweep_page;

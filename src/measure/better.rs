@@ -1,5 +1,5 @@
-//! Finds the built-in profiles that fit a measured one better than its nominal does, or as well: over as great a length, with as little of
-//! it outside, or with so much less outside.
+//! Finds the built-in profiles that fit a measured one better than its nominal does, or as well. One fits as well if it fits over the same
+//! length and no more metal lies outside of it, or if much less metal lies outside of it.
 
 use super::align::{consensus, onto};
 use super::curve::MarkedCurve;

@@ -58,7 +58,7 @@ pub(super) struct FittedMotion {
     pub length: f64,
     /// Length of what is measured near the parts \[mm\].
     pub near: f64,
-    /// Length \[mm\] of that part of it that does not fit and lies above the nominal.
+    /// Length \[mm\] of the part of `near` that does not fit and lies above the nominal: outside of a rail, inside of a wheel.
     pub above: f64,
 }
 

@@ -201,7 +201,7 @@ impl AlignedProfile<'_> {
                 };
             }
         };
-        // Up to three times as far: a place that is the highest after a turn may lie elsewhere, and a value jump.
+        // A value may jump: after a turn another place is the highest. Of motions up to three times as far their share counts.
         for times in [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0f64] {
             let along = |x: f64, z: f64| Station { x, z, ..Station::AXES };
             let about = |on: &Aligned| turned(pivot(on, self.side, options), times * TURNED_OFF);

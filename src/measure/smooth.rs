@@ -57,8 +57,8 @@ struct Local {
 }
 
 impl NoisyPoints {
-    /// Takes the ends of a profile's segments as points, and finds their noise, that from which a curve was smoothed included. A drawing has
-    /// too few of them to be noisy.
+    /// Takes the ends of a profile's segments as points, and finds their noise. If the profile was smoothed before, the noise of the points
+    /// that it was smoothed from counts. A drawing has too few points to be noisy.
     pub fn new(profile: &Profile) -> Self {
         let mut own = Self::default();
         let (mut dropped, mut before) = (false, false);
@@ -135,8 +135,8 @@ impl NoisyPoints {
         (!self.smooth.is_empty()).then(|| self.marks(&self.smooth))
     }
 
-    /// Returns the marks as [`Self::smoothed`] does, of windows half as wide: the shape that they leave out is a sixteenth of that of
-    /// the whole ones.
+    /// Returns the marks as [`Self::smoothed`] does, with windows half as wide; `None` for points without noise. Such windows take a
+    /// sixteenth of the shape that whole ones take, so that the difference tells what smoothing has taken.
     pub fn less_smoothed(&self) -> Option<(Vec<Mark>, Vec<bool>)> {
         let narrow = Self { window: 0.5 * self.window, ..self.clone() };
         (self.sigma > 0.0).then(|| narrow.marks(&narrow.robust()))

@@ -6,17 +6,16 @@ use std::sync::Mutex;
 /// Locked once the program ends because of a signal.
 static ENDING: Mutex<()> = Mutex::new(());
 
-/// Begins to wait for signals, but for those that the caller has this program ignore. If the system grants no thread for this, a signal ends the program at once, and the next run
-/// cleans up.
+/// Begins to wait for signals, but not for those that the caller has this program ignore. If the system grants no thread for this, a signal
+/// ends the program at once, and the next run cleans up.
 #[cfg(unix)]
 pub(super) fn watch() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     let wait = || {
         // Where the system does not tell, `nohup` may have had SIGHUP ignored.
-        let unknown = |signal| signal == SIGHUP;
-        let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
-        let heard = heard.filter(|signal| !is_ignored(*signal).unwrap_or_else(|| unknown(*signal)));
+        let is_heard = |&signal: &i32| !is_ignored(signal).unwrap_or(signal == SIGHUP);
+        let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(is_heard);
         let Ok(mut signals) = Signals::new(heard) else { return };
         let Some(signal) = signals.forever().next() else { return };
         let _ending = ENDING.lock();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::progress::Progress;
 use crate::answer::{Outcome, complain, counted, folder_of, print};
 use crate::range::interval;
-use wheelrail::case::{TABLE_FOLDER, roll_end, table as tabulate, write_table};
+use wheelrail::case::{TABLE_FOLDER, table as tabulate, table_roll_ends, write_table};
 use wheelrail::error::{Error, Result};
 use wheelrail::files::Folder;
 use wheelrail::scene;
@@ -94,7 +94,5 @@ fn remarks(table: &ContactTable) -> Vec<String> {
                 quantity.tolerance
             )
         });
-    let middle = table.about().yaw.at(0.5);
-    let ends = table.roll_jumps(middle).into_iter().map(|end| roll_end(end, under));
-    missing.chain(over).chain(ends).collect()
+    missing.chain(over).chain(table_roll_ends(table)).collect()
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use numpy::PyArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use wheelrail::case::{self, TABLE_FOLDER, roll_end, write_table};
+use wheelrail::case::{self, TABLE_FOLDER, table_roll_ends, write_table};
 use wheelrail::export::table_wrp;
 use wheelrail::files::{Folder, read_text};
 use wheelrail::table::Beginning;
@@ -64,14 +64,8 @@ pub(crate) fn table(
         }
         Ok(made)
     })?;
-    let ends = made.roll_jumps(made.about().yaw.middle());
-    for end in ends {
-        say(
-            py,
-            "roll",
-            &roll_end(end, if made.about().over_yaw() { " under some yaws" } else { "" }),
-            ROLL_ENDS,
-        )?;
+    for end in table_roll_ends(&made) {
+        say(py, "roll", &end, ROLL_ENDS)?;
     }
     Ok(ContactTable { table: made })
 }
