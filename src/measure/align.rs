@@ -29,8 +29,10 @@ const STARTS: [f64; 5] = [0.0, 4.0, 8.0, 12.0, 16.0];
 const MOST_WORK: usize = 200_000_000;
 /// Root mean square \[mm\] above which fitted parts are probably worn.
 const LARGEST_RESIDUAL: f64 = 0.1;
-/// Least length \[mm\] of what fits: a shorter base leaves a turn by 0.05 mm over it, which are 0.4 mm at the other end of a wheel. A best
-/// fit that turns the profile by more than an instrument needs a third of the profile.
+/// Distance \[mm\] by which what fits may be turned over its length.
+const TURNED_BY: f64 = 0.05;
+/// Least length \[mm\] of what fits: a shorter base leaves a turn by [`TURNED_BY`] over it, which are 0.4 mm at the other end of a wheel. A
+/// best fit that turns the profile by more than an instrument, and than the base leaves, needs a third of the profile.
 const LEAST_BASE: f64 = 20.0;
 
 /// Share of what is measured of fitted parts that has to fit: at the ends of parts, places belong to what lies beside them.
@@ -214,12 +216,13 @@ fn fitted(
     };
     let FittedMotion { motion, rms, length, .. } = found;
     let turn = motion.angle().to_degrees();
-    let is_turned = align == Align::BestFit && turned(turn, side).is_some();
+    let left = (TURNED_BY / length).to_degrees();
+    let is_turned = align == Align::BestFit && turned(turn, side, left).is_some();
     let least = if is_turned { (measured.lengths().sum::<f64>() / 3.0).max(LEAST_BASE) } else { LEAST_BASE };
     let refused = refused(of_parts, found, least);
     let parts_fit = of_parts.rms <= LARGEST_RESIDUAL;
     let doubt =
-        refused.clone().or_else(|| is_web.then(|| off(found)).flatten()).or_else(|| turned(turn, side));
+        refused.clone().or_else(|| is_web.then(|| off(found)).flatten()).or_else(|| turned(turn, side, 0.0));
     let [x, z, by_turn] = [motion.x, motion.z, turn].map(in_micrometres);
     let text = format!("{by}, over {length:.0} mm; moved by ({x}, {z}) mm, turned by {by_turn} deg");
     let alignment = Alignment { align, text, residual: Some(rms), doubt };
@@ -311,11 +314,11 @@ fn off(found: FittedMotion) -> Option<String> {
     })
 }
 
-/// Doubts a turn \[deg\] beyond that of instruments, and of rails as they lie.
-fn turned(turn: f64, side: Side) -> Option<String> {
-    let lies =
-        |n: &f64| side == Side::Rail && (turn.abs() - n.recip().atan().to_degrees()).abs() <= MOST_TURNED;
-    if turn.abs() <= MOST_TURNED || INCLINED.iter().any(lies) {
+/// Doubts a turn \[deg\], known within `left`, beyond that of instruments, and of rails as they lie.
+fn turned(turn: f64, side: Side, left: f64) -> Option<String> {
+    let most = MOST_TURNED + left;
+    let lies = |n: &f64| side == Side::Rail && (turn.abs() - n.recip().atan().to_degrees()).abs() <= most;
+    if turn.abs() <= most || INCLINED.iter().any(lies) {
         return None;
     }
     let but = if side == Side::Rail { " and no inclination of 1:20, 1:30 or 1:40" } else { "" };

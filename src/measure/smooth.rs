@@ -92,12 +92,13 @@ impl NoisyPoints {
         if own.sigma < NO_NOISE {
             own.sigma = 0.0;
         }
-        if own.sigma > 0.0 || dropped || own.at.windows(3).any(turns_back) {
-            let step = own.length() / own.at.len() as f64;
-            let bias = 3.0 / ROUNDING.powi(3) / 24.0 * FOURTH;
-            let best = (own.sigma.powi(2) * step * SQUARE / (8.0 * bias * bias)).powf(1.0 / 9.0);
-            own.window = best.min(WIDEST);
-            own.smooth = own.robust();
+        let step = own.length() / own.at.len() as f64;
+        let bias = 3.0 / ROUNDING.powi(3) / 24.0 * FOURTH;
+        let best = (own.sigma.powi(2) * step * SQUARE / (8.0 * bias * bias)).powf(1.0 / 9.0);
+        own.window = best.min(WIDEST);
+        let smooth = own.robust();
+        if own.sigma > 0.0 || dropped || own.at.windows(3).any(turns_back) || has_outlier(&smooth) {
+            own.smooth = smooth;
         }
         own
     }
@@ -106,8 +107,7 @@ impl NoisyPoints {
     fn robust(&self) -> Vec<Local> {
         let (mut found, _) = self.parabolas(self.window, &vec![1.0; self.at.len()]);
         for _ in 0..ROUNDS {
-            let scale =
-                LOST_AT * median(found.iter().map(|local| local.across.abs()).collect()).max(NO_NOISE);
+            let scale = lost_from(&found);
             let off = found.iter().map(|local| local.across / scale);
             let weights: Vec<f64> = off.map(|off| (1.0 - off * off).max(0.0).powi(2)).collect();
             found = self.parabolas(self.window, &weights).0;
@@ -246,6 +246,20 @@ impl NoisyPoints {
         };
         (Local { across, slope, bend, chord }, to - from + 1)
     }
+}
+
+/// Returns the distance \[mm\] from its parabola from which on a point is off the curve.
+fn lost_from(found: &[Local]) -> f64 {
+    LOST_AT * median(found.iter().map(|local| local.across.abs()).collect()).max(NO_NOISE)
+}
+
+/// Tells whether a point is off the curve on which its neighbours lie. At a corner they are off as well.
+fn has_outlier(found: &[Local]) -> bool {
+    let least = lost_from(found);
+    let is_off = |local: &Local| local.across.abs() > least;
+    let alone =
+        |near: &[Local]| is_off(&near[LEAST_BESIDE]) && near.iter().filter(|of| is_off(of)).count() == 1;
+    found.windows(2 * LEAST_BESIDE + 1).any(alone)
 }
 
 /// Sets marks between those of a smoothed curve, on the cubics through them.
