@@ -11,6 +11,10 @@ use crate::profile::{Mark, Profile, Station, trace};
 /// Distance of marks \[mm\]. Between two marks the curve is a cubic, off an arc of 3 mm radius by 6e-10 mm.
 const STEP: f64 = 0.05;
 
+/// Angle \[rad\] by which a curve may turn where it begins not to be measured: a tread or crown worn over a part of its width rises at
+/// the part's end by as much.
+const TURNS: f64 = 0.1;
+
 /// Marks from left to right.
 #[derive(Debug, Clone)]
 pub(super) struct MarkedCurve {
@@ -213,6 +217,26 @@ impl MarkedCurve {
                 }
             }
         }
+        found.unknown |= (0..self.marks.len()).any(|k| self.unknown[k] && self.may_reach(k, sign, found.z));
         Some(found)
+    }
+
+    /// Tells whether the way from a mark to the next one, which was not measured, may be higher than `z` \[mm\], or for `sign` = −1 lower:
+    /// the tangents at its two ends meet there, if they may turn by [`TURNS`].
+    fn may_reach(&self, k: usize, sign: f64, z: f64) -> bool {
+        let Some([a, b]) = self.marks.get(k..k + 2).map(|pair| [pair[0].station, pair[1].station]) else {
+            return false;
+        };
+        let along = |of: &Station, turn: f64| {
+            let (sin, cos) = (sign * turn).sin_cos();
+            [of.cos * cos - of.sin * sin, of.sin * cos + of.cos * sin]
+        };
+        let [u, v] = [along(&a, TURNS), along(&b, -TURNS)];
+        if sign * u[1] <= 0.0 || sign * v[1] >= 0.0 {
+            return false;
+        }
+        let across = u[0] * v[1] - u[1] * v[0];
+        let share = ((b.x - a.x) * v[1] - (b.z - a.z) * v[0]) / across;
+        sign * (a.z + share * u[1] - z) > 0.0
     }
 }

@@ -20,7 +20,7 @@ const WIDEST: f64 = 6.0;
 const LEAST_BESIDE: usize = 3;
 const LOOKED_ON: usize = 3;
 /// Rounds in which points off the curve lose their weight, and the residual in median absolute residuals at which it is lost.
-const ROUNDS: usize = 3;
+const ROUNDS: i32 = 4;
 const LOST_AT: f64 = 6.0;
 /// Standard deviation of a normal distribution whose median absolute value is 1.
 const NORMAL: f64 = 1.4826;
@@ -106,10 +106,17 @@ impl NoisyPoints {
     /// Fits the parabolas; points off the curve lose their weight.
     fn robust(&self) -> Vec<Local> {
         let (mut found, _) = self.parabolas(self.window, &vec![1.0; self.at.len()]);
-        for _ in 0..ROUNDS {
-            let scale = lost_from(&found);
-            let off = found.iter().map(|local| local.across / scale);
-            let weights: Vec<f64> = off.map(|off| (1.0 - off * off).max(0.0).powi(2)).collect();
+        for round in 1..=ROUNDS {
+            let least = lost_from(&found);
+            let far = |local: &Local| local.across.abs();
+            let weight = |k: usize| {
+                // At first the farthest of neighbours alone: it draws their parabolas away from the others.
+                let beside = &found[k.saturating_sub(LEAST_BESIDE)..(k + LEAST_BESIDE + 1).min(found.len())];
+                let farthest = beside.iter().map(far).fold(0.0, f64::max);
+                let off = far(&found[k]) / least.max(0.5f64.powi(round) * farthest);
+                (1.0 - off * off).max(0.0).powi(2)
+            };
+            let weights: Vec<f64> = (0..found.len()).map(weight).collect();
             found = self.parabolas(self.window, &weights).0;
         }
         found

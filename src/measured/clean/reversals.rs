@@ -14,8 +14,17 @@ const SIDE: usize = 2;
 /// Least share of the points at which the path of points in no order turns back; a shuffled path does at every second one.
 const NO_ORDER: f64 = 0.1;
 
+/// Tells whether the path runs back over one edge only, from vertex k: it turns by more than 120° at both of its ends, to opposite sides.
+fn is_zigzag(at: &[Point], k: usize) -> bool {
+    let Some([a, b, c, d]) = k.checked_sub(1).and_then(|from| at.get(from..from + 4)) else {
+        return false;
+    };
+    let [first, second] = [turn(a, b, c), turn(b, c, d)];
+    first.abs().min(second.abs()) > BACKWARDS && first * second < 0.0
+}
+
 /// Returns the vertices where the path runs back: it turns by more than 120° there, and neither goes on to larger x on both sides, as a
-/// notch between blade and stock rail does, nor ends within a vertex.
+/// notch between blade and stock rail does, nor ends within a vertex. No notch is a zigzag.
 pub(super) fn reversals(at: &[Point]) -> Vec<usize> {
     let (Some(first), Some(last)) = (at.first(), at.last()) else { return Vec::new() };
     let way = (last.x - first.x).signum();
@@ -24,7 +33,9 @@ pub(super) fn reversals(at: &[Point]) -> Vec<usize> {
         let turned = turn(a, b, c).abs();
         let onwards =
             way * (b.x - a.x) > 0.0 && way * (c.x - b.x) > 0.0 && turned < std::f64::consts::PI - NARROWEST;
-        turned > BACKWARDS && !(onwards && *k >= SIDE && *k + SIDE < at.len())
+        let notch =
+            onwards && *k >= SIDE && *k + SIDE < at.len() && ![*k - 1, *k].iter().any(|&k| is_zigzag(at, k));
+        turned > BACKWARDS && !notch
     };
     (1..at.len().saturating_sub(1)).filter(back).collect()
 }

@@ -1,7 +1,7 @@
 //! Rows that a scanner wrote where it saw nothing, and the order of noisy points, on random profiles whose truth is known.
 
 use super::*;
-use crate::campaign::scenes;
+use crate::campaign::{scenes, seeds};
 use wheelrail::measured::of_points;
 
 const NAMES: [(&str, Side); 8] = [
@@ -114,11 +114,18 @@ fn drop_out(points: &mut [[f64; 2]], random: &mut Random) -> Vec<bool> {
     bad
 }
 
-#[test]
-fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
-    let (cases, mut silent, mut wrong, mut refused) = (scenes(), 0, 0, 0);
-    // Of 739 a run on a steep face has a low step before its first one.
-    for case in (0..cases).chain([739]) {
+/// A profile with runs of bad rows.
+struct BadScan {
+    truth: Truth,
+    scan: Scan,
+    points: Vec<[f64; 2]>,
+    /// Which rows are off the surface.
+    off: Vec<bool>,
+}
+
+impl BadScan {
+    /// The case of a number; `None` if all its bad rows lie on the surface.
+    fn random(case: u64) -> Option<Self> {
         let mut random = Random::stream(651, case);
         let truth = Truth::random(&mut random);
         let noise = if random.below(3) == 0 { 0.0 } else { random.between(0.0, 0.01) };
@@ -134,22 +141,33 @@ fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
         // Zeros may lie on the surface.
         let off = |row: usize| bad[row] && truth.distance(points[row]) > 0.1f64.max(12.0 * noise);
         let off: Vec<bool> = (0..points.len()).map(off).collect();
-        if !off.contains(&true) {
-            continue;
-        }
-        let plain = said(&of_points("scan", &points, truth.side, &options(&[])));
-        let is_silent = plain.is_empty();
+        off.contains(&true).then_some(Self { truth, scan, points, off })
+    }
+
+    fn read(&self, repair: &[Repair]) -> Result<Measured> {
+        of_points("scan", &self.points, self.truth.side, &options(repair))
+    }
+}
+
+#[test]
+fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
+    let (mut cases, mut silent, mut wrong, mut refused) = (0, 0, 0, 0);
+    // Of 739 a run on a steep face has a low step before its first one.
+    for case in seeds().chain([739]) {
+        let Some(bad) = BadScan::random(case) else { continue };
+        cases += 1;
+        let is_silent = said(&bad.read(&[])).is_empty();
         silent += u64::from(is_silent);
-        let (what, was) = match of_points("scan", &points, truth.side, &options(&[Repair::RemoveSpikes])) {
+        let (what, was) = match bad.read(&[Repair::RemoveSpikes]) {
             Err(error) => (error.to_string(), &mut refused),
-            Ok(read) if read.points.iter().any(|point| off[point.number - 1]) => {
+            Ok(read) if read.points.iter().any(|point| bad.off[point.number - 1]) => {
                 ("wrong after the repair".to_owned(), &mut wrong)
             }
             Ok(_) if is_silent => ("silent".to_owned(), &mut 0),
             Ok(_) => continue,
         };
         *was += 1;
-        println!("case {case}, {} points every {} mm: {what}", points.len(), scan.spacing);
+        println!("case {case}, {} points every {} mm: {what}", bad.points.len(), bad.scan.spacing);
     }
     println!(
         "runs of bad rows: {cases} profiles, {silent} silent, {wrong} wrong after the repair, {refused} refused after it"
@@ -158,6 +176,16 @@ fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
         silent * 500 <= cases && wrong * 200 <= cases && refused * 15 <= cases,
         "{silent} {wrong} {refused}"
     );
+}
+
+#[test]
+fn a_path_that_steps_back_without_its_bad_runs_is_refused() {
+    // Rows of a steep face a step too low or too high lie beside it: of 322 a run is found in part, of 352 none.
+    for case in [322, 352] {
+        let read = BadScan::random(case).expect("bad rows").read(&[Repair::RemoveSpikes]);
+        let said = read.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(said.contains("points in order along the profile"), "{case}: {said}");
+    }
 }
 
 #[test]
