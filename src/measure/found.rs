@@ -31,6 +31,12 @@ impl FoundValues {
         quantities.iter().for_each(|quantity| self.put(*quantity, Err(why.to_owned())));
     }
 
+    /// Takes values back that cannot be relied on.
+    pub fn withdraw(&mut self, quantities: &[Quantity], why: &str) {
+        quantities.iter().for_each(|quantity| self.values[*quantity as usize] = None);
+        self.lack(quantities, why);
+    }
+
     /// Takes over what another search has found.
     pub fn with(mut self, other: Self) -> Self {
         for quantity in Quantity::ALL {

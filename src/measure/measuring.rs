@@ -145,8 +145,13 @@ impl AlignedProfile<'_> {
     }
 
     fn measures(self, curve: &MarkedCurve, options: &MeasureOptions) -> Measures {
-        let found = self.found(options);
+        let mut found = self.found(options);
         let if_off = self.if_off(curve, options, found.values());
+        let unbounded: Vec<Quantity> = Quantity::ALL
+            .into_iter()
+            .filter(|of| found.values()[*of as usize].is_some() && if_off[*of as usize].is_none())
+            .collect();
+        found.withdraw(&unbounded, "a profile that lies 0.1 mm or 0.1° otherwise has no value");
         let Self { side, own, on_nominal, lost, rivals, .. } = self;
         let lost = lost.map(|why| format!("{why}: no wear, the rest in its own axes"));
         let alignments =
