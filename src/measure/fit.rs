@@ -19,7 +19,8 @@ const LEAST_HOLD: f64 = 0.03;
 /// Largest number of passes until a motion is settled: each one leaves the square of the last one's error, or a tenth where the feet slide.
 const MOST_PASSES: usize = 200;
 /// Motion \[mm\] at which a fit is settled, a ten-thousandth of the instrument's resolution; in the second half of the passes
-/// [`CHOSEN`] is enough: feet that jump between the marks of a nominal may move it to and fro by less, for ever.
+/// [`CHOSEN`] is enough, and each pass makes a smaller share of its motion: feet that jump between the marks of a nominal, and places that
+/// lose and gain weight, may move it to and fro for ever, about its mean.
 const SETTLED: f64 = 1e-6;
 /// Smallest and largest distance \[mm\] up to which a place fits, between which it is three times the root mean square.
 pub(super) const FITS: Interval = Interval::new(0.005, 0.1);
@@ -178,7 +179,8 @@ impl NominalFit<'_> {
         let mut last = f64::INFINITY;
         for pass in 0..MOST_PASSES {
             let pairs = self.pairs(&motion, &mut feet, &belongs, chosen.as_deref(), fits);
-            let Some(step) = step(&pairs) else {
+            let share = 1.0 / (1 + pass.saturating_sub(MOST_PASSES / 2)) as f64;
+            let Some(step) = step(&pairs, share) else {
                 return Err(FREE.into());
             };
             let next = motion.placed_by(&step);
@@ -250,8 +252,8 @@ impl NominalFit<'_> {
     }
 }
 
-/// Returns the motion that makes the distances least to first order; `None` if some motion changes none of them.
-fn step(pairs: &[PointAndFoot]) -> Option<Station> {
+/// Returns this share of the motion that makes the distances least to first order; `None` if some motion changes none of them.
+fn step(pairs: &[PointAndFoot], share: f64) -> Option<Station> {
     let length: f64 = pairs.iter().map(|pair| pair.weight).sum();
     let mean = |k: usize| pairs.iter().map(|pair| pair.weight * pair.at[k]).sum::<f64>() / length;
     let centre = [mean(0), mean(1)];
@@ -270,7 +272,7 @@ fn step(pairs: &[PointAndFoot]) -> Option<Station> {
     if each.symmetric_eigenvalues().min() < LEAST_HOLD * LEAST_HOLD {
         return None;
     }
-    let motion = normal.cholesky()?.solve(&right);
+    let motion = share * normal.cholesky()?.solve(&right);
     let (sin, cos) = (motion[2] / ARM).sin_cos();
     let [x, z] = centre;
     Some(Station { x: x + motion[0] - (x * cos - z * sin), z: z + motion[1] - (x * sin + z * cos), cos, sin })

@@ -192,6 +192,7 @@ impl NoisyPoints {
             unknown.push(false);
             bridge = self.unknown[k];
         }
+        redirect(&mut marks, &unknown);
         dense(&marks, &unknown)
     }
 
@@ -267,6 +268,27 @@ fn has_outlier(found: &[Local]) -> bool {
     let alone =
         |near: &[Local]| is_off(&near[LEAST_BESIDE]) && near.iter().filter(|of| is_off(of)).count() == 1;
     found.windows(2 * LEAST_BESIDE + 1).any(alone)
+}
+
+/// Gives marks of a smoothed curve the directions of the parabolas through them and their neighbours. Those of wide windows are off by the
+/// square of their width, and the curve through them would be scalloped.
+fn redirect(marks: &mut [Mark], unknown: &[bool]) {
+    let own: Vec<[f64; 2]> = marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect();
+    for k in 1..own.len().saturating_sub(1) {
+        let [before, after] = [distance(own[k - 1], own[k]), distance(own[k], own[k + 1])];
+        if unknown[k - 1] || unknown[k] || before.min(after) < 0.5 * APART {
+            continue;
+        }
+        let along = |axis: usize| {
+            let slope = |from: usize, length: f64| (own[from + 1][axis] - own[from][axis]) / length;
+            after * slope(k - 1, before) + before * slope(k, after)
+        };
+        let ([x, z], station) = ([along(0), along(1)], &mut marks[k].station);
+        let norm = x.hypot(z);
+        if norm > 0.0 {
+            (station.cos, station.sin) = (x / norm, z / norm);
+        }
+    }
 }
 
 /// Sets marks between those of a smoothed curve, on the cubics through them.

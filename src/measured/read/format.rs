@@ -41,7 +41,10 @@ impl Format {
             let all: Vec<_> =
                 Self::ALL.iter().flat_map(|f| f.extensions()).map(|e| format!(".{e}")).collect();
             let names: Vec<_> = Self::ALL.iter().map(|f| format!("\"{}\"", f.name())).collect();
-            let advice = format!("give `format = …`, one of {}", names.join(", "));
+            let advice = format!(
+                "give `format = …`, one of {}; of a file of another kind, as a drawing, export the points as two columns of numbers",
+                names.join(", ")
+            );
             Error::new(scan::clipped(name), format!("extension \"{extension}\""), all.join(", "), advice)
         })
     }
