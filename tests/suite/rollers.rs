@@ -291,6 +291,7 @@ fn boundaries_on_rollers_lie_where_s_is_the_approach() {
         }
     }
     println!("off s = δ by up to {worst:?}");
+    assert!(worst.iter().all(|off| *off > 0.0), "no boundary, plain or yawed: {worst:?}");
 }
 
 /// A window that ends at η = 0 cuts a yawed patch off its lowest places.

@@ -95,7 +95,8 @@ fn body(random: &mut Random) -> Result<(Profile, Side)> {
 fn curves_are_as_near_as_noise_allows_or_doubted() -> Result<()> {
     let mut random = Random::new(65);
     let (mut told, mut refused, mut worst, mut wrong) = (0, 0, 0f64, Vec::new());
-    for number in 0..campaign::scenes() {
+    let count = campaign::scenes();
+    for number in 0..count {
         let ((exact, side), sampling) = (body(&mut random)?, Sampling::random(&mut random));
         let Ok(found) = sampling.measured(&exact, side, &mut random, &upright()) else {
             // Noise of a quarter of the distance of the points may turn the path back.
@@ -134,11 +135,9 @@ fn curves_are_as_near_as_noise_allows_or_doubted() -> Result<()> {
             }
         }
     }
-    println!(
-        "{} curves: {told} doubted, {refused} refused, others off by up to {worst} of the bound",
-        campaign::scenes()
-    );
+    println!("{count} curves: {told} doubted, {refused} refused, others off by up to {worst} of the bound");
     assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());
+    assert!(3 * (told + refused) < 2 * count && told > 0, "{told} doubted, {refused} refused of {count}");
     Ok(())
 }
 
@@ -192,7 +191,14 @@ fn pressures_and_conicities_of_measured_pairs_are_right_or_doubted() -> Result<(
         let names =
             [*random.pick(&["60E1", "UIC60", "54E1"]), *random.pick(&["S1002", "EN13715-1:40-h28-e32.5"])];
         let bodies = [(standards::rail(names[0])?, Side::Rail), (standards::wheel(names[1])?, Side::Wheel)];
-        let (sampling, lateral) = (Sampling::random(&mut random), *random.pick(&[0.0, 2.0, 3.0, 4.0]));
+        let (drawn, lateral) = (Sampling::random(&mut random), *random.pick(&[0.0, 2.0, 3.0, 4.0]));
+        // Of points as they come few pairs are without a doubt: every second one is fine.
+        let sampling = if number % 2 == 0 {
+            let Sampling { spacing, size, noise } = drawn;
+            Sampling { spacing: 0.3 * size * spacing, noise: 0.03 * size * noise, ..drawn }
+        } else {
+            drawn
+        };
         let mut doubted = false;
         let mut file = |k: usize| -> Result<String> {
             let points = sampling.points(&bodies[k].0, &mut random);
@@ -224,6 +230,7 @@ fn pressures_and_conicities_of_measured_pairs_are_right_or_doubted() -> Result<(
     }
     println!("{scenes} pairs: {told} doubted, {refused} refused, others off by up to {worst:?}");
     assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());
+    assert!(told + refused < scenes, "{told} doubted, {refused} refused of {scenes}");
     Ok(())
 }
 
@@ -330,6 +337,7 @@ fn an_isolated_kink_stays_a_corner_under_noise() -> Result<()> {
 fn a_flange_back_that_the_wheel_does_not_have_is_doubted() -> Result<()> {
     let mut random = Random::new(70);
     let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
+    let mut told = 0;
     for number in 0..campaign::scenes() {
         let wheel = standards::wheel(random.pick::<&str>(&[
             "S1002",
@@ -354,7 +362,9 @@ fn a_flange_back_that_the_wheel_does_not_have_is_doubted() -> Result<()> {
             "{number}: {} moved by {moved}, {off}: {doubt:?}",
             wheel.name
         );
+        told += u64::from(doubt.is_some());
     }
+    assert!(told > 0 && told < campaign::scenes(), "{told} doubted");
     Ok(())
 }
 

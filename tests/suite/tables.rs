@@ -255,11 +255,12 @@ fn tables_are_cut_where_a_roll_ends() -> Result<()> {
     let (mut made, mut cut) = (0, 0);
     while made < scenes() {
         let (rail, wheel) = (*random.pick(&rails), *random.pick(&wheels));
-        let (radius, smaller) = (random.between(420.0, 560.0), random.between(0.0, 1.0));
+        // Large wheels roll over on flanges of 70° already.
+        let (radius, smaller) = (random.between(460.0, 660.0), random.between(0.0, 1.0));
         let side = if random.below(2) == 0 { 1.0 } else { -1.0 };
         let from = side * random.between(3.0, 9.0);
         let Ok(case) = unequal(rail, wheel, radius, smaller) else { continue };
-        let Ok(table) = table(&case, Interval::new(from - 0.2, from + 0.2), None, 1e-3, false) else {
+        let Ok(table) = table(&case, Interval::new(from - 1.0, from + 1.0), None, 1e-3, false) else {
             continue;
         };
         if !table.off_rail_somewhere().is_empty() {
@@ -271,5 +272,6 @@ fn tables_are_cut_where_a_roll_ends() -> Result<()> {
         compare_at(100, &name, &case, &table)?;
     }
     println!("{made} tables, {cut} cut where a roll ends");
+    assert!(cut > 0 || made < 20, "{made} tables, none of them cut where a roll ends");
     Ok(())
 }

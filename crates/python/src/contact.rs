@@ -15,8 +15,8 @@ use wheelrail::{Error, Placement, Window};
 use crate::arrays::{array, checked_shape, grid, values};
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, warn};
-use crate::filling::{checked_axes, fill, named_method};
-use crate::long::{detached, shared};
+use crate::filling::{checked_axes, fill, in_parts, named_method};
+use crate::long::{detached, waited};
 use crate::patch::Patch;
 use crate::place::{ContactOrigin, FoundAt, PairContact, joined};
 use crate::profile::Profile;
@@ -228,8 +228,9 @@ impl Contact {
         let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
-        shared(py, || {
-            fill_normal_gap(&NormalGap::new(placement), &sigma, &EtaAxis::new(&eta), tolerance, out)
+        let (gap, axis) = (NormalGap::new(placement), EtaAxis::new(&eta));
+        in_parts(py, &sigma, &axis, out, |sigma, out| {
+            fill_normal_gap(&gap, sigma, &axis, tolerance, out);
         })?;
         drop(values);
         Ok(array)
@@ -261,10 +262,11 @@ impl Contact {
         eta: &Bound<'py, PyAny>,
     ) -> PyResult<NormalArrays<'py>> {
         let [xi, eta] = checked_axes(("xi", xi), eta, 1.0)?;
-        let placement = self.placement()?;
+        let placement = self.placement()?.clone();
         checked_shape([("xi", &xi), ("eta", &eta)], 2 * 3)?;
-        let [rail, wheel] = detached(py, || {
-            let mut evaluator = Evaluator::new(placement);
+        let shape = [xi.len(), eta.len(), 3];
+        let [rail, wheel] = waited(py, move |_| {
+            let mut evaluator = Evaluator::new(&placement);
             let mut all = [const { Vec::new() }; 2];
             for (&xi, &eta) in xi.iter().flat_map(|xi| eta.iter().map(move |eta| (xi, eta))) {
                 let normals = evaluator.normals(xi, eta);
@@ -272,9 +274,8 @@ impl Contact {
                     out.extend(normal.map_or([f64::NAN; 3], |normal| [normal.x, normal.y, normal.z]));
                 }
             }
-            all
+            Ok(all)
         })?;
-        let shape = [xi.len(), eta.len(), 3];
         Ok((array(py, rail).reshape(shape)?, array(py, wheel).reshape(shape)?))
     }
 
@@ -330,8 +331,8 @@ impl Contact {
             ApproachBy::WheelLoad(load)
             | ApproachBy::WheelLoads { right: load, .. }
             | ApproachBy::AxleLoad(load) => {
-                let placement = own.placement()?;
-                let approach = detached(py, || approach_under_load(placement, load, modulus))?.or_raise()?;
+                let placement = own.placement()?.clone();
+                let approach = waited(py, move |_| approach_under_load(&placement, load, modulus))?;
                 warn(py, usual::approach(own.spot.pair.rail(), approach, true))?;
                 (approach, Some(load))
             }
@@ -353,10 +354,9 @@ impl Contact {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         scene::check_axis("xi", &xi).and_then(|()| scene::check_axis("eta", &eta)).or_raise()?;
         let placement = self.placement()?;
-        let [rail, wheel] = detached(py, || {
-            Surface::around(placement, &Window { xi: xi.into(), eta: eta.into() }, approach)
-        })?
-        .or_raise()?;
+        let own = placement.clone();
+        let [rail, wheel] =
+            waited(py, move |_| Surface::around(&own, &Window { xi: xi.into(), eta: eta.into() }, approach))?;
         let surface = |surface: &Surface| {
             let fields = PyDict::new(py);
             fields.set_item("separation", array(py, surface.separations(placement)))?;
@@ -386,8 +386,8 @@ impl Contact {
     ///
     /// Raises GeometryError for bodies that nowhere lie over each other.
     fn feasibility<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let placement = self.placement()?;
-        let found = detached(py, || feasibility(placement))?.ok_or_else(|| {
+        let placement = self.placement()?.clone();
+        let found = waited(py, move |_| Ok(feasibility(&placement)))?.ok_or_else(|| {
             let expected = "two profiles that lie over each other";
             let error = Error::new("contact", "no common xi", expected, "choose other contact points");
             exception(error.of_kind(wheelrail::ErrorKind::Geometry))
@@ -476,10 +476,11 @@ pub(crate) fn patch_from_parts(
     modulus: f64,
 ) -> PyResult<Patch> {
     let (py, spot) = (contact.py(), &contact.get().spot);
-    let (placement, name) = (spot.placement()?, spot.name.clone());
-    let patch = detached(py, || wheelrail::Patch::new(placement, approach, &Window::UNBOUNDED))?;
+    let (placement, name) = (spot.placement()?.clone(), spot.name.clone());
+    let own = placement.clone();
+    let patch = waited(py, move |_| Ok(wheelrail::Patch::new(&own, approach, &Window::UNBOUNDED)))?;
     let contact = contact.clone().into_any().unbind();
-    Ok(Patch { patch, placement: placement.clone(), contact, name, load, modulus })
+    Ok(Patch { patch, placement, contact, name, load, modulus })
 }
 
 /// Makes `wheelrail.Hertz` of an ellipse.

@@ -10,6 +10,9 @@ use crate::arrays::values;
 use crate::errors::{OrRaise, exception};
 use crate::long::shared;
 
+/// Points of a part: below 0.1 s by the slowest method on one thread.
+const PART: usize = 1 << 20;
+
 /// Reads the axes of a grid \[mm\], and checks them and the tolerance.
 pub(crate) fn checked_axes(
     (name, first): (&str, &Bound<'_, PyAny>),
@@ -34,15 +37,25 @@ pub(crate) fn fill(
     (xi, axis): (&[f64], &EtaAxis),
     out: &mut [f64],
 ) -> PyResult<()> {
-    /// Points of a part: below 0.1 s by the slowest method on one thread.
-    const PART: usize = 1 << 20;
     let strips = plan.choice.method < Method::Pointwise && placement.skew() == 0.0;
     if strips || out.len() <= PART {
         return shared(py, || plan.fill(placement, xi, axis, out));
     }
-    let columns = (PART / axis.eta().len()).next_multiple_of(MANY);
-    for (xi, out) in xi.chunks(columns).zip(out.chunks_mut(columns * axis.eta().len())) {
-        shared(py, || plan.fill(placement, xi, axis, out))?;
+    in_parts(py, xi, axis, out, |xi, out| plan.fill(placement, xi, axis, out))
+}
+
+/// Fills a grid in parts of whole blocks of columns, which do not depend on each other, with a check for Ctrl-C in between.
+pub(crate) fn in_parts(
+    py: Python<'_>,
+    first: &[f64],
+    axis: &EtaAxis,
+    out: &mut [f64],
+    mut fill: impl FnMut(&[f64], &mut [f64]) + Send,
+) -> PyResult<()> {
+    let rows = axis.eta().len().max(1);
+    let columns = (PART / rows).max(1).next_multiple_of(MANY);
+    for (first, out) in first.chunks(columns).zip(out.chunks_mut(columns * rows)) {
+        shared(py, || fill(first, out))?;
         py.check_signals()?;
     }
     Ok(())

@@ -15,7 +15,7 @@ use wheelrail::{Error, Placement};
 use crate::arrays;
 use crate::errors::{OrRaise, exception};
 use crate::files::files;
-use crate::long::{detached, shared};
+use crate::long::{shared, waited};
 use crate::values::{made, mesh, vectors};
 
 /// Two axes of a grid.
@@ -164,7 +164,8 @@ impl Patch {
     #[pyo3(signature = (size = None))]
     fn mesh<'py>(&self, py: Python<'py>, size: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
         let size = size.map(wheelrail::mesh::checked_size).transpose().or_raise()?;
-        let found = detached(py, || patch_mesh(&self.placement, &self.patch, size))?.or_raise()?;
+        let (placement, patch) = (self.placement.clone(), self.patch.clone());
+        let found = waited(py, move |_| patch_mesh(&placement, &patch, size))?;
         let (points, cells) = (PyDict::new(py), PyDict::new(py));
         let overlap = found.separation.iter().map(|s| self.patch.approach - s).collect();
         points.set_item("overlap", arrays::array(py, overlap))?;
@@ -180,7 +181,8 @@ impl Patch {
     /// cell at a tip repeats a node.
     fn strips<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let counts = StripCounts::default();
-        let strips = detached(py, || StripMesh::new(&self.placement, &self.patch, counts))?.or_raise()?;
+        let (placement, patch) = (self.placement.clone(), self.patch.clone());
+        let strips = waited(py, move |_| StripMesh::new(&placement, &patch, counts))?;
         let found = quads(&strips);
         let cells = PyDict::new(py);
         cells.set_item("area", arrays::array(py, found.area))?;
@@ -204,9 +206,9 @@ impl Patch {
     ) -> PyResult<Bound<'py, PyAny>> {
         let cell = cell.map(scene::pressure_cell).transpose().or_raise()?;
         let site = self.grid(spacing.map(GridStep::steps)).and_then(|axes| self.site(axes)).or_raise()?;
-        let asked = AskedPressure { cell };
-        let found = shared(py, || PartPressure::over_grid(&site, asked, self.modulus))?.or_raise()?;
-        let [xi, eta] = [site.grid.xi, site.grid.eta];
+        let (asked, modulus) = (AskedPressure { cell }, self.modulus);
+        let [xi, eta] = [site.grid.xi.clone(), site.grid.eta.clone()];
+        let found = waited(py, move |_| PartPressure::over_grid(&site, asked, modulus))?;
         let count = [xi.len(), eta.len()];
         let values = PyArray1::from_vec(py, found.field.unwrap_or_default()).reshape(count)?;
         let outline =
@@ -227,13 +229,13 @@ impl Patch {
     /// Raises InputError for an unknown format, one that cannot hold the grid, and an empty patch.
     #[pyo3(signature = (format = None, *, spacing = None))]
     fn files<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         format: Option<&str>,
         spacing: Option<GridStep>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let axes = self.grid(spacing.map(GridStep::steps)).or_raise()?;
-        let run = shared(py, || self.run(axes))?.or_raise()?;
+        let (py, own) = (slf.py(), slf.clone().unbind());
+        let axes = own.get().grid(spacing.map(GridStep::steps)).or_raise()?;
+        let run = waited(py, move |_| own.get().run(axes))?;
         files(py, format, move |format| case::files(&run, format))
     }
 

@@ -15,7 +15,7 @@ use wheelrail::{Error, ErrorKind, RailDistance, WheelDistance};
 
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, say, warn};
-use crate::long::detached;
+use crate::long::waited;
 use crate::pair::Pair;
 use crate::positions::{RollArgument, positions};
 use crate::sweep::{AskedOfSweep, sweep};
@@ -178,20 +178,20 @@ impl Wheelset {
     fn conicity(&self, py: Python<'_>, amplitude: f64, roll: RollArgument) -> PyResult<f64> {
         let roll = roll.roll()?;
         let radii = [self.left_pair(), &self.pair].map(|pair| pair.pair.wheel_radius());
-        let radius = |side| radii[usize::from(side == TrackSide::Right)];
-        let computed = || -> wheelrail::Result<_> {
-            let table = Conicity::new(&self.system, amplitude, roll)?;
+        let radius = move |side| radii[usize::from(side == TrackSide::Right)];
+        let (system, landmarks) = (Arc::clone(&self.system), Arc::clone(&self.landmarks));
+        let (found, doubts) = waited(py, move |_| {
+            let table = Conicity::new(&system, amplitude, roll)?;
             let found = table.at(amplitude);
             let doubts = match found {
                 Ok(_) => {
-                    let basis = ConicityBasis::new(&self.system, &table, roll)?;
-                    basis.doubts(&[amplitude], &self.landmarks, radius)
+                    let basis = ConicityBasis::new(&system, &table, roll)?;
+                    basis.doubts(&[amplitude], &landmarks, radius)
                 }
                 Err(_) => Vec::new(),
             };
             Ok((found, doubts))
-        };
-        let (found, doubts) = detached(py, computed)?.or_raise()?;
+        })?;
         let found = found.map_err(|why| {
             let expected = "a rolling radius that grows towards the flange";
             let error = Error::new("amplitude", why.to_string(), expected, "take a smaller amplitude");

@@ -19,8 +19,8 @@ const HARMLESS: f64 = 0.05;
 const HARMFUL: f64 = 0.1;
 /// Deviations of a mean of noise that it does not reach.
 const SIGNIFICANT: f64 = 5.0;
-/// Distance \[mm\] by which smoothing may move the curve of a full-sized profile: 2 % of the approach under a wheel's load.
-const MOVED: f64 = 0.002;
+/// Distance \[mm\] by which smoothing may move the curve of a full-sized profile: 2 % of the approach under a wheel's load, over both bodies.
+const MOVED: f64 = 0.001;
 /// Distance \[mm\] of a point of a full-sized profile from the cubic through its neighbours that shows that they are too far apart for
 /// pressures, the deviations of noise that it exceeds, and the longest step there, as a multiple of the median one: beside longer ones
 /// the profile has a gap, or was sampled at equal x on a side face.

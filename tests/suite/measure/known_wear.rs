@@ -314,5 +314,7 @@ fn known_wear_is_within_three_times_its_uncertainty_or_absent() -> Result<()> {
         "worst {worst:.2}, {values} values, {withheld} withheld, {refused} refused, {complete} of {clean} clean"
     );
     assert!(wrong.is_empty(), "{} wrong: {:#?}", wrong.len(), &wrong[..wrong.len().min(20)]);
+    let count = seeds().count();
+    assert!(*values > 5 * count && 5 * *clean > count, "{values} values, {clean} clean");
     Ok(())
 }

@@ -82,14 +82,16 @@ fn one_side_of_a_whole_rail_is_fitted_by_its_web() -> Result<()> {
 #[test]
 fn a_web_of_another_drawing_is_told_of() -> Result<()> {
     let web = MeasureOptions { align: Some(Align::Web), ..MeasureOptions::default() };
-    let mut random = Random::new(540);
+    let (mut random, mut read) = (Random::new(540), 0);
     for number in 0..scenes().div_ceil(4) {
         let [own, other] = [drawn_at_random(&mut random), drawn_at_random(&mut random)];
         let scan = Scan::random(&mut random);
         let Ok(own) = drawn(&scan.points(&own, &mut random)) else { continue };
         let measures = measure(&own, Side::Rail, Some(&drawn(&other)?), &web)?;
         assert!(!measures.findings.is_empty(), "{number}: {scan:?} {measures:?}");
+        read += 1;
     }
+    assert!(2 * read > scenes().div_ceil(4), "{read} read");
     Ok(())
 }
 

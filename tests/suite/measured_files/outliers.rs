@@ -172,6 +172,7 @@ fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
     println!(
         "runs of bad rows: {cases} profiles, {silent} silent, {wrong} wrong after the repair, {refused} refused after it"
     );
+    assert!(2 * cases > seeds().count() as u64, "{cases} with bad rows");
     assert!(
         silent * 500 <= cases && wrong * 200 <= cases && refused * 15 <= cases,
         "{silent} {wrong} {refused}"
