@@ -155,6 +155,8 @@ LONG = {
     "bar": "track.sweep(np.linspace(-8, 8, 9_000_000), conicity=False, progress=True)",
     "worn": "rough.sweep(np.linspace(-5, 5, 5_000_000), conicity=False)",
     "grid": "track.touch().right[0].separation(np.linspace(-9, 9, 9000), np.linspace(-9, 9, 9000), method='pointwise')",
+    "normals": "track.touch().right[0].normals(np.linspace(-9, 9, 3000), np.linspace(-9, 9, 3000))",
+    "pressure": "track.touch(1.0).right[0].patch(load=6e4).pressure(0.03)",
     "profile": "wr.read_profile(sys.argv[1], side='wheel', mirror=False, flip_z=False, origin='as-is')",
     "march": "wr.march(EXAMPLES + '/crossing/crossing.toml', np.arange(-100, 300, 0.02))",
     "contacts": "wr.Case(EXAMPLES + '/scenes/wheelset.toml').sweep(np.linspace(-8, 8, 9_000_000))",
