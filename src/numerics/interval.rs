@@ -206,6 +206,12 @@ impl Interval {
         Self::new(of(self.low), of(self.high))
     }
 
+    /// Returns the range of the squares.
+    #[inline]
+    pub fn squared(self) -> Self {
+        Self::new(self.nearest(0.0).powi(2), self.magnitude().powi(2))
+    }
+
     /// Divides every number of the interval by every number of a positive one.
     #[inline]
     pub fn quotient(self, positive: Self) -> Self {
@@ -281,6 +287,16 @@ impl Mul for Interval {
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self, other);
         Self::around([a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high])
+    }
+}
+
+impl Mul<f64> for Interval {
+    type Output = Self;
+
+    /// Multiplies every number of the interval.
+    #[inline(always)]
+    fn mul(self, by: f64) -> Self {
+        Self::between(self.low * by, self.high * by)
     }
 }
 

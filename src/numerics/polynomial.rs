@@ -146,22 +146,19 @@ pub fn range(c: &[f64], t: Interval) -> Interval {
 
 /// Computes the Bernstein coefficients of p over an interval of t. p, or a curve with such coordinates, lies in their hull.
 pub fn bernstein(c: &[f64], t: Interval) -> Vec<f64> {
-    let mut shifted = recentred(c, t.low);
-    let mut power = 1.0;
-    for c in &mut shifted {
-        *c *= power;
+    let (mut b, n) = (recentred(c, t.low), c.len().saturating_sub(1));
+    let (mut power, mut binomial) = (1.0, 1.0);
+    for (k, b) in b.iter_mut().enumerate() {
+        *b *= power / binomial;
         power *= t.width();
+        binomial *= (n - k) as f64 / (k + 1) as f64;
     }
-    let n = shifted.len().saturating_sub(1);
-    let coefficient = |i: usize| {
-        let (mut sum, mut weight) = (0.0, 1.0);
-        for (k, &c) in shifted.iter().enumerate().take(i + 1) {
-            sum += weight * c;
-            weight *= (i as f64 - k as f64) / (n as f64 - k as f64).max(1.0);
+    for step in 1..=n {
+        for k in (step..=n).rev() {
+            b[k] += b[k - 1];
         }
-        sum
-    };
-    (0..shifted.len()).map(coefficient).collect()
+    }
+    b
 }
 
 /// Computes the coefficients of the product of two polynomials. All are 0 where one polynomial has no coefficients.

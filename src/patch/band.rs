@@ -2,9 +2,9 @@
 
 use super::by_samples::SMOOTH;
 use super::edges::EdgeFinder;
+use super::end::End;
 use super::grading::Grading;
-use super::in_valleys::slicer::STEP_ROUNDINGS;
-use super::outline::{End, Outline};
+use super::outline::Outline;
 use super::slice::Slice;
 use super::stretch::{Stretch, StretchFit};
 use crate::numerics::interval::Interval;
@@ -12,7 +12,6 @@ use crate::numerics::lanes::{Lanes, MANY, lanes};
 use crate::numerics::nan_max;
 use crate::numerics::quadrature::smooth_integrals;
 use crate::placement::Body;
-use crate::profile::Section;
 
 /// Distance of two corners, as a share of the band's length, up to which they count as one.
 pub(super) const ONE_CORNER: f64 = 1e-11;
@@ -342,17 +341,4 @@ pub(super) fn extrapolated(&[[x, square, middle], [y, other, last]]: &[[f64; 3];
     let half = (other + (other - square) * share).sqrt();
     let middle = last + (last - middle) * share;
     [middle - half, middle + half]
-}
-
-/// Returns the ξ between the ends of a range \[mm\] at which a body's surface steps or ends because its profile overhangs. `extent` is
-/// that of the profile \[mm\].
-pub(super) fn steps(section: &Section, xi: Interval, extent: f64) -> impl Iterator<Item = f64> {
-    let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;
-    let torn = move |k: usize| {
-        let [left, right] = [&section.pieces[k - 1], &section.pieces[k]];
-        left.xi.high != right.xi.low || (left.heights[1] - right.heights[0]).abs() > rounding
-    };
-    let torn = (1..section.pieces.len()).filter(move |&k| torn(k));
-    let ends = torn.flat_map(|k| [section.pieces[k - 1].xi.high, section.pieces[k].xi.low]);
-    ends.filter(move |end| xi.surrounds(*end))
 }

@@ -1,15 +1,16 @@
 //! Finds the connected components of the patch {s < δ} inside a window, and the closed loops around each.
 
 use super::band::{Band, Turn};
-use super::by_roots::turns::LeastGap;
 use super::by_samples;
 use super::corners;
+use super::end::End;
 use super::in_valleys::lanes;
+use super::lines::bands;
+use super::lines::joints::PassedJoints;
 use super::loops;
 use super::loops::Rows;
 use super::measure::area_and_length;
-use super::outline::{End, Outline};
-use super::plain;
+use super::outline::Outline;
 use super::slice::Slice;
 use super::window::Window;
 use crate::conformal::Reference;
@@ -188,10 +189,15 @@ fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
     let placement = outline.slicer.placement();
     let (mut bands, turns) = if let Some(by_samples) = &mut outline.slicer.by_samples {
         by_samples::bands(by_samples, placement, &outline.window)
-    } else if outline.slicer.in_valleys.is_some() {
-        lanes::bands(outline)
     } else {
-        plain::bands(outline)
+        let bands = bands::bands(outline);
+        match bands.filter(|bands| bands.iter().all(|band| outline.slicer.has_one_slice(band.xi))) {
+            Some(bands) => (bands, Vec::new()),
+            None => {
+                outline.slicer.seek_valleys();
+                lanes::bands(outline)
+            }
+        }
     };
     bands.sort_by(|a, b| a.xi.low.total_cmp(&b.xi.low));
     let meeting: Vec<[usize; 2]> = (0..bands.len())
@@ -280,14 +286,19 @@ impl BandGroup {
         for band in &mut self.bands {
             band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
             let mut more = Vec::new();
-            let over_surface = outline.slicer.is_over_rail() && !sampled;
-            if over_surface || outline.slicer.by_roots.is_some() {
-                corners::over_joints(&mut outline.slicer, band, &mut more);
-            } else if let Some(least) = least {
-                corners::plain(outline, band, least, &mut more);
-            } else if !sampled {
-                let eta = reach(outline, band);
-                corners::on_circles(outline, band, eta, &mut more);
+            let over_rail = outline.slicer.is_over_rail();
+            let on_crown = outline.slicer.is_on_roller() && over_rail;
+            let depth = least.map_or(f64::NAN, |least| outline.slicer.approach() - least);
+            match outline.slicer.lines().filter(|_| !on_crown) {
+                Some(lines) => PassedJoints { lines }.within(band.xi, depth, &mut more),
+                None if sampled => {}
+                None if over_rail => {
+                    corners::over_joints(&mut outline.slicer, band, &mut more);
+                }
+                None => {
+                    let eta = reach(outline, band);
+                    corners::on_circles(outline, band, eta, &mut more);
+                }
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
@@ -336,7 +347,7 @@ impl BandGroup {
             places.extend(holds(0.0).then_some(0.0));
             places.extend(band.xi.ends());
             let window = outline.window.eta;
-            places.extend(outline.slicer.least_gap(band.xi, window).and_then(LeastGap::least_of_all));
+            places.extend(outline.slicer.least_of_all(band.xi, window));
             let cut = window.ends().into_iter().any(f64::is_finite) && !band.valleys.is_empty();
             places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
             for xi in places {

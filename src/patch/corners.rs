@@ -1,60 +1,19 @@
 //! Finds where the boundary of a patch may have a corner, and where it turns back in η.
 
 use super::band::{Band, ONE_CORNER, extrapolated, halved};
-use super::by_roots::sections;
 use super::in_valleys::slicer::InValleys;
+use super::lines::sections;
 use super::loops::Rows;
 use super::outline::Outline;
 use super::slice::Slicer;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, change, last_where};
 
-/// Distance from a band up to which joints of the wheel are examined, as a multiple of the band's depth × sinθ. It is
-/// enough for slopes up to 80°. A joint beyond it that is missed only costs the boundary some more stretches.
-const FAR_JOINTS: f64 = 16.0;
-
 /// Number of intervals of a circle in which a root of s = δ is sought. Two roots within one interval are missed.
 const CIRCLE_INTERVALS: usize = 8;
 
 /// Number of steps along a band between which an edge is followed from joint to joint.
 const JOINT_PLACES: usize = 32;
-
-/// Most doublings of the bracket of a sagitta.
-const DOUBLINGS: usize = 40;
-
-/// Appends the ξ inside a band where, without skew, its boundary crosses a joint or the end of the wheel's
-/// surface. The two branches mirror each other. `deepest` is the least s of the component \[mm\].
-///
-/// Method: closed form except for one root at each joint. The point over the joint at p lies at ξ = p + e sinθ and height
-/// h(p) + e cosθ; that height must equal ζ^R(ξ) + δ.
-pub(super) fn plain(outline: &Outline<'_>, band: &Band, deepest: f64, corners: &mut Vec<f64>) {
-    let placement = outline.slicer.placement();
-    let (approach, rail) = (outline.slicer.approach(), &placement.rail().section);
-    let frame = placement.wheel().section.frame;
-    let far = FAR_JOINTS * (approach - deepest).abs() * frame.sin.abs();
-    for (p, height) in placement.wheel().section.joints(band.xi.grown(far)) {
-        if frame.sin == 0.0 {
-            corners.extend(band.xi.surrounds(p).then_some(p));
-            continue;
-        }
-        let miss = |e: f64| height + e * frame.cos - rail.height(p + e * frame.sin) - approach;
-        // A joint beside the band may lie over no rail.
-        let reached = band.xi.map(|xi| (xi - p) / frame.sin);
-        let low = reached.low.min(reached.high).max(0.0);
-        if miss(low) >= 0.0 {
-            continue;
-        }
-        let mut high = low + (approach - deepest).abs() / frame.cos;
-        for _ in 0..DOUBLINGS {
-            if miss(high).is_nan() || miss(high) > 0.0 || high > placement.rolling_radius() {
-                break;
-            }
-            high *= 2.0;
-        }
-        let root = bracketed(miss, low, high).map(|e| p + e * frame.sin);
-        corners.extend(root.filter(|&xi| band.xi.surrounds(xi)));
-    }
-}
 
 /// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel. `eta` is the
 /// range of η of the band.

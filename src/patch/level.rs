@@ -1,8 +1,10 @@
 //! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
 
+use super::in_valleys::slicer::STEP_ROUNDINGS;
 use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
+use crate::profile::Section;
 use crate::separation::{Evaluator, GapSlopes};
 
 /// The gap whose level δ bounds the patch.
@@ -92,6 +94,19 @@ pub(super) fn joints(placement: &Placement, over_rail: Option<&NormalGap<'_>>, o
         None => placement.rail().section.joints(over).map(|(xi, _)| xi).collect(),
     };
     joints.into_iter().filter(|xi| over.surrounds(*xi)).collect()
+}
+
+/// Returns the ξ between the ends of a range \[mm\] at which a body's surface steps or ends because its profile overhangs. `extent` is
+/// that of the profile \[mm\].
+pub(super) fn steps(section: &Section, xi: Interval, extent: f64) -> impl Iterator<Item = f64> {
+    let rounding = STEP_ROUNDINGS * f64::EPSILON * extent;
+    let torn = move |k: usize| {
+        let [left, right] = [&section.pieces[k - 1], &section.pieces[k]];
+        left.xi.high != right.xi.low || (left.heights[1] - right.heights[0]).abs() > rounding
+    };
+    let torn = (1..section.pieces.len()).filter(move |&k| torn(k));
+    let ends = torn.flat_map(|k| [section.pieces[k - 1].xi.high, section.pieces[k].xi.low]);
+    ends.filter(move |end| xi.surrounds(*end))
 }
 
 /// Returns 1 − cos α, without a difference of nearly equal numbers.

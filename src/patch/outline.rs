@@ -1,7 +1,5 @@
 //! Cuts off the slices of a patch at the edges of a window.
 
-use serde::Serialize;
-
 use super::in_valleys::circle::{BESIDE, Turned};
 use super::slice::Slicer;
 use super::window::Window;
@@ -13,18 +11,6 @@ use crate::placement::Placement;
 
 /// Size of a slope of s below which its sign does not count. Turns that are missed change s by less than 1e-11 of their distance.
 const SLOPE_NOISE: f64 = 1e-11;
-
-/// What bounds a component at one of its ends in ξ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum End {
-    /// A tip: the two branches meet in a single point with s(ξ, η) = δ, or stand at both ends of a line along which s is level.
-    Tip,
-    /// The window cuts the component.
-    Window,
-    /// One of the bodies ends, or steps away from the other body behind an overhang.
-    ProfileEnd,
-}
 
 /// Slices of the patch {s < δ}, cut off at a window.
 #[derive(Debug)]
@@ -74,11 +60,8 @@ impl<'a> Outline<'a> {
     }
 
     fn clipped(&self, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
-        let window = self.window.eta;
-        // NaN stays.
-        let low = if low < window.low { window.low } else { low };
-        let high = if high > window.high { window.high } else { high };
-        (low <= high).then_some([low, high])
+        let cut = self.window.eta.cut(Interval::new(low, high));
+        (cut.low <= cut.high).then_some(cut.ends())
     }
 
     /// Returns η \[mm\] of the least s at ξ within the window. It is the place of the valley (η = 0 without skew), or the
@@ -91,21 +74,15 @@ impl<'a> Outline<'a> {
     /// between the valley and that edge.
     pub(super) fn depth(&mut self, valley: Option<usize>, xi: f64) -> f64 {
         let floor = self.floor(valley, xi);
-        match (&mut self.slicer.in_valleys, valley) {
-            (Some(in_valleys), Some(valley)) => {
-                let spot = in_valleys.spot(valley, xi);
-                if spot.eta == floor || floor.is_nan() {
-                    return in_valleys.depth_at(xi, &spot);
-                }
-                let reached =
-                    in_valleys.edges(xi, valley).is_some_and(|[low, high]| low <= floor && floor <= high);
-                if !reached {
-                    return f64::INFINITY;
-                }
+        if let (Some(in_valleys), Some(valley)) = (&mut self.slicer.in_valleys, valley) {
+            let spot = in_valleys.spot(valley, xi);
+            if spot.eta == floor || floor.is_nan() {
+                return in_valleys.depth_at(xi, &spot);
             }
-            // The lowest place of a line whose slices are found by roots may be another one.
-            _ if floor == 0.0 && self.slicer.by_roots.is_none() => return self.slicer.depth(xi),
-            _ => {}
+            let edges = in_valleys.edges(xi, valley);
+            if !edges.is_some_and(|[low, high]| low <= floor && floor <= high) {
+                return f64::INFINITY;
+            }
         }
         self.slicer.miss(xi, floor)
     }

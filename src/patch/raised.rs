@@ -172,10 +172,11 @@ impl<'a> Raised<'a> {
         Some([self.height(&at, &point) - at.moved[1], self.relief.slopes(&point)[1]])
     }
 
-    /// Computes the slope of the gap along σ; NaN where a body has no surface.
-    pub(super) fn slope_along(&mut self, sigma: f64, eta: f64) -> f64 {
-        let [run, rise] = self.direction(sigma);
-        self.point(sigma, eta).map_or(f64::NAN, |(_, point)| self.relief.slopes(&point)[0] * run - rise)
+    /// Computes the gap \[mm\] and its slopes along σ and η; `None` off the wheel.
+    pub(super) fn gap_and_slopes(&mut self, sigma: f64, eta: f64) -> Option<[f64; 3]> {
+        let (at, point) = self.point(sigma, eta)?;
+        let ([run, rise], [along, across]) = (self.direction(sigma), self.relief.slopes(&point));
+        Some([self.height(&at, &point) - at.moved[1], along * run - rise, across])
     }
 
     /// Returns the abscissa \[mm\] of the profile's point from which the wheel's surface is swept there; NaN off the wheel.
@@ -283,7 +284,7 @@ mod tests {
                 let step = 1e-4;
                 let difference =
                     (raised.gap(sigma + step, edge) - raised.gap(sigma - step, edge)) / (2.0 * step);
-                let slope = raised.slope_along(sigma, edge);
+                let slope = raised.gap_and_slopes(sigma, edge).map_or(f64::NAN, |[_, along, _]| along);
                 assert!((slope - difference).abs() < 1e-9, "{skew} {sigma}: {slope} and {difference}");
             }
         }

@@ -3,12 +3,12 @@
 //! Without skew the wheel must rise by δ − g(ξ). This gives the sagitta e, and η = ±√(e(2w + e)) takes the place of
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
-use super::by_roots::ByRoots;
-use super::by_roots::turns::LeastGap;
 use super::by_samples::BySamples;
 use super::divided::lines_reenter;
 use super::in_valleys::slicer::{InValleys, NEAR_GUESS, newton_from, on_surface};
 use super::level::{Level, joints};
+use super::lines::Lines;
+use super::lines::ranges::LeastGap;
 use super::raised::RaisedLanes;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
@@ -52,12 +52,12 @@ pub struct Slicer<'a> {
     wheel: WheelSurface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// The slices of swept bodies on a roller; `None` on a rail.
-    pub(super) by_roots: Option<ByRoots<'a>>,
-    /// The slices of swept bodies on a rail under a skewed wheel, over the rail's surface, or beyond an end of the wheel; otherwise `None`.
+    /// The lines of swept bodies that fall to one lowest place; `None` where a body varies.
+    lines: Option<Lines<'a>>,
+    /// Those of the normal gap over the rail's surface; otherwise `None`.
+    normal: Option<Lines<'a>>,
+    /// The slices of swept bodies on a rail of which a line may meet several; otherwise `None`.
     pub(super) in_valleys: Option<InValleys<'a>>,
-    /// The normal gap of these slices over the rail's surface; otherwise `None`.
-    normal: Option<Level<'a>>,
     /// The slices that are found from samples; otherwise `None`.
     pub(super) by_samples: Option<BySamples<'a>>,
     approach: f64,
@@ -66,44 +66,60 @@ pub struct Slicer<'a> {
 impl<'a> Slicer<'a> {
     /// Makes a slicer for approach δ \[mm\].
     pub fn new(placement: &'a Placement, approach: f64) -> Self {
-        Self::over(placement, approach, Reference::Plane)
+        let mut slicer = Self::over(placement, approach, Reference::Plane);
+        if placement.skew() != 0.0 {
+            slicer.seek_valleys();
+        }
+        slicer
     }
 
     /// Makes a slicer of the patch over the tangent plane or over the rail's surface, where ξ is σ, and s is t(σ, η) + δ (1 − cos α).
     pub(super) fn over(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
+        let sampled = BySamples::apply_to(placement, approach);
+        let on_rail = !sampled && placement.under().is_none();
+        let normal = on_rail && reference == Reference::Rail;
         let level = || Level::new(placement, approach, reference);
-        let (sampled, on_roller) = (BySamples::apply_to(placement, approach), placement.under().is_some());
-        let on_rail = !sampled && !on_roller;
-        let normal = (on_rail && reference == Reference::Rail).then(level);
-        let surface = normal.as_ref().and_then(Level::normal_gap).map(|gap| gap.rail().clone());
-        let skewed = placement.skew() != 0.0;
-        let in_valleys = on_rail && (surface.is_some() || skewed || lines_reenter(placement, approach));
-        Self {
+        let mut slicer = Self {
             placement,
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
-            by_roots: (on_roller && !sampled).then(|| ByRoots::new(placement, approach, level())).flatten(),
-            in_valleys: in_valleys.then(|| InValleys::new(placement, approach, surface)),
+            lines: (!sampled).then(|| Lines::new(placement, approach, reference)),
+            normal: normal.then(|| Lines::along_normals(placement, approach)),
+            in_valleys: None,
             by_samples: sampled.then(|| BySamples::new(placement, approach, level())),
-            normal,
             approach,
+        };
+        let is_plain = on_rail && reference == Reference::Plane && placement.skew() == 0.0;
+        if is_plain && lines_reenter(placement, approach) {
+            slicer.seek_valleys();
         }
+        slicer
+    }
+
+    /// From here on finds slices from valleys, of which a line may have several; on a rail.
+    pub(super) fn seek_valleys(&mut self) {
+        if let Some(raised) = self.lines.as_ref().and_then(|lines| lines.gap.raised()) {
+            self.in_valleys = Some(InValleys::new(self.placement, self.approach, raised.surface.clone()));
+        }
+    }
+
+    /// Returns whether each line of a range of ξ or σ \[mm\] is known to meet the patch in one interval at most.
+    pub(super) fn has_one_slice(&mut self, over: Interval) -> bool {
+        let is_plain = self.placement.skew() == 0.0 && !self.is_over_rail();
+        let lines = self.lines.as_mut().filter(|lines| !is_plain && lines.gap.raised().is_some());
+        lines.is_none_or(|lines| lines.have_one_slice(over))
     }
 
     /// Returns the gap whose level bounds the patch; `None` where it is s over the tangent plane of swept bodies on a rail.
     fn level(&self) -> Option<&Level<'a>> {
-        let of_roots = || self.by_roots.as_ref().map(|by_roots| &by_roots.level);
-        self.by_samples
-            .as_ref()
-            .map(|by_samples| &by_samples.level)
-            .or_else(of_roots)
-            .or(self.normal.as_ref())
+        let lines = || self.normal.as_ref().or(self.lines.as_ref())?.gap.level();
+        self.by_samples.as_ref().map(|by_samples| &by_samples.level).or_else(lines)
     }
 
     fn level_mut(&mut self) -> Option<&mut Level<'a>> {
-        let of_roots = self.by_roots.as_mut().map(|by_roots| &mut by_roots.level);
-        self.by_samples.as_mut().map(|by_samples| &mut by_samples.level).or(of_roots).or(self.normal.as_mut())
+        let lines = self.normal.as_mut().or(self.lines.as_mut()).and_then(|lines| lines.gap.level_mut());
+        self.by_samples.as_mut().map(|by_samples| &mut by_samples.level).or(lines)
     }
 
     /// Returns whether both edges of the slices around a valley mirror each other.
@@ -117,19 +133,28 @@ impl<'a> Slicer<'a> {
 
     /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
     pub(super) fn reach(&self) -> Option<Interval> {
-        match self.level().and_then(Level::normal_gap) {
-            Some(gap) => gap.rail().reach(),
-            None if self.placement.skew() == 0.0 => self.placement.overlap(),
-            // A skewed wheel lies over another part of a roller.
-            None => self.placement.rail().section.reach(),
-        }
+        self.lines.as_ref()?.gap.reach()
     }
 
-    /// Returns the least gaps of a range of ξ inside one of η \[mm\], on a roller; `None` where they are those of two profiles in the midplane,
-    /// whose turns have formulas.
+    /// Returns the lines that fall to one lowest place; `None` where slices are found from valleys or from samples.
+    pub(super) fn lines(&mut self) -> Option<&mut Lines<'a>> {
+        self.lines.as_mut().filter(|_| self.in_valleys.is_none())
+    }
+
+    /// Returns the gaps of a range of ξ inside one of η \[mm\] whose least on each line bounds the patch; `None` where slices are found
+    /// from valleys or from samples.
     pub(super) fn least_gap(&mut self, over: Interval, window: Interval) -> Option<LeastGap<'_, 'a>> {
-        let slices = self.by_roots.as_mut()?;
-        (!slices.in_midplane(window)).then_some(LeastGap { slices, over, window })
+        Some(LeastGap { lines: self.lines()?, over, window })
+    }
+
+    /// Returns ξ or σ \[mm\] of the least s of all lines of a range, inside a window of η; `None` as for [`Self::least_gap`].
+    pub(super) fn least_of_all(&mut self, over: Interval, window: Interval) -> Option<f64> {
+        if self.in_valleys.is_none()
+            && let Some(lines) = &mut self.normal
+        {
+            return LeastGap { lines, over, window }.least_of_all();
+        }
+        self.least_gap(over, window)?.least_of_all()
     }
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
@@ -142,9 +167,14 @@ impl<'a> Slicer<'a> {
         self.level().and_then(Level::normal_gap).is_some()
     }
 
+    /// Returns whether what is below is a swept roller.
+    pub(super) fn is_on_roller(&self) -> bool {
+        self.by_samples.is_none() && self.placement.under().is_some()
+    }
+
     /// Returns whether the patch of swept bodies is where the points of [`Self::raised`] lie in the wheel.
     pub(super) fn is_over_raised(&self) -> bool {
-        let on_crown = self.by_roots.is_some() && self.is_over_rail();
+        let on_crown = self.is_on_roller() && self.is_over_rail();
         self.by_samples.is_none() && !on_crown
     }
 
@@ -160,15 +190,11 @@ impl<'a> Slicer<'a> {
             let eta = by_samples.lowest(xi, None);
             return by_samples.separation(xi, eta) - self.approach;
         }
-        if let Some(by_roots) = &mut self.by_roots {
-            return by_roots.depth(xi);
+        if let Some(in_valleys) = &mut self.in_valleys {
+            return in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.depth(valley, xi));
         }
-        match &mut self.in_valleys {
-            Some(in_valleys) => {
-                in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.depth(valley, xi))
-            }
-            None => midplane_gap(self.placement, xi) - self.approach,
-        }
+        let lowest = self.lowest(xi);
+        self.lines.as_mut().map_or(f64::NAN, |lines| lines.gap.gap(xi, lowest))
     }
 
     /// Returns s − δ at a valley \[mm\]; without a valley that of the midplane.
@@ -182,16 +208,16 @@ impl<'a> Slicer<'a> {
     /// Returns how far the wheel lies above what bounds the patch at a point \[mm\]: s − δ, or over the rail's surface its height over
     /// the raised point.
     pub(super) fn miss(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.in_valleys {
-            Some(in_valleys) => in_valleys.raised.gap(xi, eta),
+        match &mut self.lines {
+            Some(lines) => lines.gap.gap(xi, eta),
             None => self.separation(xi, eta) - self.approach,
         }
     }
 
     /// Returns the slope of [`Self::miss`] along ξ.
     pub(super) fn slope_along(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.in_valleys {
-            Some(in_valleys) => in_valleys.raised.slope_along(xi, eta),
+        match &mut self.lines {
+            Some(lines) => lines.gap.at(xi, eta).map_or(f64::NAN, |at| at.along),
             None => self.gradient(xi, eta)[0],
         }
     }
@@ -213,15 +239,16 @@ impl<'a> Slicer<'a> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.edges(xi, valley);
         }
-        let by_formula = self.normal.is_none() && self.is_mirrored(valley);
-        if let (Some(in_valleys), Some(valley), false) = (&mut self.in_valleys, valley, by_formula) {
-            return in_valleys.edges(xi, valley);
+        let by_formula =
+            self.placement.under().is_none() && self.normal.is_none() && self.is_mirrored(valley);
+        if by_formula {
+            let edge = self.half(xi)?;
+            return Some([-edge, edge]);
         }
-        if let Some(by_roots) = &mut self.by_roots {
-            return by_roots.edges(xi);
+        match (&mut self.in_valleys, valley) {
+            (Some(in_valleys), Some(valley)) => in_valleys.edges(xi, valley),
+            _ => self.lines.as_mut()?.edges(xi),
         }
-        let edge = self.half(xi)?;
-        Some([-edge, edge])
     }
 
     /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess; of slices from valleys, of the one that holds `valley`.
@@ -237,7 +264,7 @@ impl<'a> Slicer<'a> {
         }
         let upper = self.edge_near(xi, guess, 1)?;
         let lower = if self.is_mirrored(valley) { -upper } else { self.edge_near(xi, guess, 0)? };
-        let stepped = self.by_roots.as_mut().is_some_and(|by_roots| by_roots.may_step(xi, [lower, upper]));
+        let stepped = self.lines().is_some_and(|lines| lines.may_step(xi, [lower, upper]));
         (!stepped).then_some([lower, upper])
     }
 
@@ -245,30 +272,20 @@ impl<'a> Slicer<'a> {
     /// [`newton_from`].
     pub(super) fn edge_near(&mut self, xi: f64, [low, high]: [f64; 2], side: usize) -> Option<f64> {
         let (guess, outward, near) = ([low, high][side], [-1.0, 1.0][side], NEAR_GUESS * (high - low));
-        match (&mut self.by_roots, &mut self.in_valleys) {
-            (Some(by_roots), _) => newton_from(|eta| by_roots.miss_and_slope(xi, eta), guess, outward, near),
-            (None, Some(InValleys { raised, .. })) => {
-                newton_from(|eta| raised.gap_and_slope(xi, eta), guess, outward, near)
-            }
-            (None, None) => None,
-        }
+        let lines = self.lines.as_mut()?;
+        newton_from(|eta| lines.gap.at(xi, eta).map(|at| [at.gap, at.across]), guess, outward, near)
     }
 
     /// Returns the abscissae \[mm\] of the points of the wheel's and of a roller's profile from which the surfaces at a place are swept;
     /// NaN where there is none.
     pub(super) fn abscissae(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        match &mut self.in_valleys {
-            Some(in_valleys) => [in_valleys.raised.abscissa(xi, eta), f64::NAN],
-            None => {
-                self.level_mut().and_then(|level| level.at(xi, eta)).map_or([f64::NAN; 2], |at| at.abscissae)
-            }
-        }
+        self.lines.as_mut().map_or([f64::NAN; 2], |lines| lines.gap.abscissae(xi, eta))
     }
 
     /// Returns the points at 16 ξ \[mm\] of a rail, or of a roller over the tangent plane, raised by δ.
     pub(super) fn raised(&self, xi: &Lanes) -> RaisedLanes<MANY> {
-        let over_plane = || RaisedLanes::over_plane(xi, self.approach);
-        self.in_valleys.as_ref().map_or_else(over_plane, |in_valleys| in_valleys.raised.lanes(xi))
+        let raised = self.lines.as_ref().and_then(|lines| lines.gap.raised());
+        raised.map_or_else(|| RaisedLanes::over_plane(xi, self.approach), |raised| raised.lanes(xi))
     }
 
     /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, of slices from valleys that of `valley`,
@@ -324,11 +341,12 @@ impl<'a> Slicer<'a> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.lowest(xi, None);
         }
-        if let Some(by_roots) = &mut self.by_roots {
-            return by_roots.lowest(xi);
+        match (&mut self.in_valleys, &mut self.lines) {
+            (Some(in_valleys), _) => {
+                in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.spot(valley, xi).eta)
+            }
+            (None, lines) => lines.as_mut().map_or(f64::NAN, |lines| lines.lowest(xi, 0.0)),
         }
-        let Some(in_valleys) = &mut self.in_valleys else { return 0.0 };
-        in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.spot(valley, xi).eta)
     }
 
     /// Returns η of a valley at ξ \[mm\]; 0 in the midplane.
@@ -336,19 +354,22 @@ impl<'a> Slicer<'a> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.lowest(xi, valley);
         }
-        if let Some(by_roots) = &mut self.by_roots {
-            return by_roots.lowest(xi);
+        match (self.in_valleys.as_ref().zip(valley), &mut self.lines) {
+            (Some((in_valleys, valley)), _) => in_valleys.spot(valley, xi).eta,
+            (None, lines) => lines.as_mut().map_or(0.0, |lines| lines.lowest(xi, 0.0)),
         }
-        let places = self.in_valleys.as_ref().zip(valley);
-        places.map_or(0.0, |(in_valleys, valley)| in_valleys.spot(valley, xi).eta)
     }
 
     /// Returns η \[mm\] of the least gap over a valley at ξ; 0 in the midplane.
     ///
     /// Method: over the rail's surface the least t lies where the normal meets the valley, which is δ cos α − t below the raised point.
     pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+        if let (None, Some(lines)) = (&self.in_valleys, &mut self.normal) {
+            return lines.lowest(xi, 0.0);
+        }
         let mut eta = self.valley(valley, xi);
-        if let (Some(in_valleys), Some(level), Some(valley)) = (&self.in_valleys, &mut self.normal, valley) {
+        let level = self.normal.as_mut().and_then(|lines| lines.gap.level_mut());
+        if let (Some(in_valleys), Some(level), Some(valley)) = (&self.in_valleys, level, valley) {
             let steps = if in_valleys.valleys.is_mirrored(valley) { 0 } else { TO_NEAREST };
             for _ in 0..steps {
                 let Some(met) = level.met_by_normal(xi, eta) else { break };

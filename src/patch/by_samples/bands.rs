@@ -4,7 +4,7 @@ use super::lines::{BySamples, LineSlice, SlicedLine, TO_LOWEST, links};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::band::{Band, Turn};
-use crate::patch::outline::End;
+use crate::patch::end::End;
 use crate::patch::window::Window;
 use crate::placement::Placement;
 

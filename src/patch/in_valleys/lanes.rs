@@ -7,8 +7,10 @@
 use super::events::{Events, events};
 use super::slicer::NEAR_GUESS;
 use crate::numerics::interval::Interval;
-use crate::patch::band::{Band, Turn, steps};
-use crate::patch::outline::{End, Outline};
+use crate::patch::band::{Band, Turn};
+use crate::patch::end::End;
+use crate::patch::level::steps;
+use crate::patch::outline::Outline;
 
 /// Distance, as a share of R, within which a valley at the edge of an interval belongs to the interval, and within which
 /// two intervals are one. Where lines of constant ξ only touch the wheel's end, the edge is known only to the square root

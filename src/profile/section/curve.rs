@@ -65,7 +65,11 @@ impl PolynomialBranch {
 
     /// Returns bounds of ξ′(t) and ζ′(t) over an interval of ξ \[mm\], and of their quotient, which are infinite where ξ′ may be 0.
     pub(super) fn rates(&self, xi: Interval) -> ([Interval; 2], Interval) {
-        let t = self.parameters(xi);
+        self.rates_over(self.parameters(xi))
+    }
+
+    /// As [`Self::rates`] over an interval of t.
+    fn rates_over(&self, t: Interval) -> ([Interval; 2], Interval) {
         let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), t));
         (rates, if run.low <= 0.0 { Interval::ALL } else { rise.quotient(run) })
     }
@@ -76,24 +80,25 @@ impl PolynomialBranch {
     }
 
     pub(super) fn derivative_bounds(&self, xi: Interval) -> [Interval; 2] {
-        let ([run, rise], slope) = self.rates(xi);
+        let t = self.parameters(xi);
+        let ([run, rise], slope) = self.rates_over(t);
         if run.low <= 0.0 {
             return [slope; 2];
         }
-        [slope, self.turn(xi, [run, rise]).quotient(run.map(|v| v.powi(3)))]
+        [slope, self.turn(t, [run, rise]).quotient(run.map(|v| v.powi(3)))]
     }
 
     /// Returns bounds of the curvature \[1/mm\] over an interval of ξ \[mm\]; infinite where both rates may be 0.
     pub(super) fn curvature_bounds(&self, xi: Interval) -> Interval {
-        let (rates @ [run, rise], _) = self.rates(xi);
+        let t = self.parameters(xi);
+        let (rates @ [run, rise], _) = self.rates_over(t);
         let slowest = run.nearest(0.0).hypot(rise.nearest(0.0));
         let speed = Interval::new(slowest, run.magnitude().hypot(rise.magnitude()));
-        if slowest == 0.0 { Interval::ALL } else { self.turn(xi, rates).quotient(speed.map(|v| v.powi(3))) }
+        if slowest == 0.0 { Interval::ALL } else { self.turn(t, rates).quotient(speed.map(|v| v.powi(3))) }
     }
 
-    /// Returns bounds of ζ″ξ′ − ξ″ζ′ over an interval of ξ \[mm\] from those of ξ′ and ζ′.
-    fn turn(&self, xi: Interval, [run, rise]: [Interval; 2]) -> Interval {
-        let t = self.parameters(xi);
+    /// Returns bounds of ζ″ξ′ − ξ″ζ′ over an interval of t from those of ξ′ and ζ′.
+    fn turn(&self, t: Interval, [run, rise]: [Interval; 2]) -> Interval {
         let [bend, sag] = [&self.xi, &self.zeta].map(|c| range(&derivative(&derivative(c)), t));
         sag * run + -(bend * rise)
     }

@@ -131,27 +131,6 @@ impl Section {
         *slopes.get_or_init(|| self.branches[*branch].slope_bounds(*xi))
     }
 
-    /// Returns bounds of ζ′ over a range of ξ \[mm\]; `None` where the body has no surface in a part of it, or changes its height at
-    /// once.
-    pub(crate) fn slopes_over(&self, xi: Interval) -> Option<Interval> {
-        let first = self.pieces.partition_point(|piece| piece.xi.high < xi.low);
-        let count = self.pieces[first..].iter().take_while(|piece| piece.xi.low <= xi.high).count();
-        let (from, to) = (self.pieces.get(first)?, self.pieces[first..first + count].last()?);
-        let torn = self.steps.iter().any(|step| (first + 1..first + count).contains(step));
-        if torn || xi.low < from.xi.low || to.xi.high < xi.high {
-            return None;
-        }
-        let slopes = (first..first + count).map(|k| {
-            let Piece { xi: whole, branch, .. } = &self.pieces[k];
-            let own = self.slopes(k);
-            if xi.holds(*whole) {
-                return own;
-            }
-            own.cut(self.branches[*branch].derivative_bounds(xi.cut(*whole))[0])
-        });
-        Some(slopes.fold(Interval::NONE, Interval::hull))
-    }
-
     /// Returns an end of a piece, 0 the one at smaller ξ, as a point of its branch, and its ζ \[mm\]. The ends are found once.
     pub(crate) fn end(&self, piece: &Piece, end: usize) -> (BranchPoint, f64) {
         let point = |xi| self.branches[piece.branch].point(xi);

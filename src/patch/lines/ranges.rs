@@ -1,0 +1,522 @@
+//! Finds the ranges of ξ over which the least gap of a line is below δ, and where it is least of all. Bounds of its slope prove both.
+
+use super::gap::BoxSlopes;
+use super::place::LowestPlace;
+use super::{Lines, SHALLOW_VALLEY, WIDENINGS};
+use crate::numerics::interval::Interval;
+use crate::numerics::roots::{bracketed, last_where};
+use crate::patch::end::End;
+use crate::patch::turning_points;
+
+/// Depth \[mm\] up to which a part of the patch, or what parts it, does not count: some roundings of the bodies' coordinates.
+const SHALLOW: f64 = 1e-12;
+
+/// Difference \[mm\] up to which one least gap of several may be taken for the least of all.
+const LEVEL: f64 = 1e-10;
+
+/// Width, as a share of the first range, up to which a range is not halved again: a body ends or steps there.
+const SHORTEST: f64 = 1e-14;
+
+/// Width, as a share of the first range, up to which a range without C is not halved again where no bounds are known: a surface steps or
+/// stands upright there, normals of a roller meet a sheet of the wheel that others hide from C, or a body is missing at both ends.
+const UNKNOWN: f64 = 1.0 / 512.0;
+
+/// Number of ranges after which none is halved again: a hundred times those of usual pairs.
+const MOST_RANGES: usize = 1 << 14;
+
+/// Share of a depth by which the least gap may be uncertain.
+const FAR_ABOVE: f64 = 0.75;
+
+/// Most steps to a lowest place that is known well enough to be compared.
+const STEPS: usize = 4;
+
+/// Factor by which the range that is to hold the gap along normals is widened.
+const WIDER: f64 = 4.0;
+
+/// Half the width, as a share of the range, of the first bracket around a place to which the search for the least gap has come.
+const FIRST_BRACKET: f64 = 1e-6;
+
+/// Most doublings of that bracket: up to ranges that are not halved.
+const DOUBLINGS: usize = 11;
+
+/// Most steps to where the least gap passes δ.
+const MOST_STEPS: usize = 100;
+
+/// What is known of the least gap between two lines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Between {
+    /// It is below δ.
+    Inside,
+    /// It is not below δ, or a body is missing.
+    Outside,
+    /// It passes δ once, or ends or steps.
+    Passing,
+}
+
+/// The least gap of all lines of a range.
+#[derive(Debug)]
+pub(in crate::patch) struct LeastGap<'s, 'a> {
+    pub(in crate::patch) lines: &'s mut Lines<'a>,
+    /// Range of ξ or σ \[mm\].
+    pub(in crate::patch) over: Interval,
+    /// Range of η \[mm\].
+    pub(in crate::patch) window: Interval,
+}
+
+impl LeastGap<'_, '_> {
+    /// Parts the range into ranges, ascending, over each of which the least gap is below δ, or not, or passes it once.
+    ///
+    /// Method: between two places the least gap stays between straight lines of its largest and least slope. A range is halved until
+    /// these prove that the gap does not pass δ, or does not turn. Cost: the least gaps at some fifty places.
+    pub(super) fn parts(&mut self) -> Vec<[LowestPlace; 2]> {
+        let mut parts: Vec<([LowestPlace; 2], Between)> = Vec::new();
+        let mut cells = Vec::new();
+        let mut count = 0;
+        if self.is_in_midplane() {
+            return self.midplane_parts();
+        }
+        for range in self.ranges() {
+            let (begin, mut waiting) = (parts.len(), self.parted_at_c(range));
+            while let Some([a, b]) = waiting.pop() {
+                count += 1;
+                let mut known = self.between([&a, &b]);
+                if known.is_none() {
+                    if let Some(xi) = self.middle([&a, &b], count) {
+                        let middle = self.place(xi, halfway(a.eta, b.eta), 0.0);
+                        waiting.extend([[middle, b], [a, middle]]);
+                        continue;
+                    }
+                    known = Some(Between::Passing);
+                }
+                let known = known.unwrap_or(Between::Passing);
+                // Inside the patch the gap is lower than where it is not below δ.
+                if known != Between::Outside {
+                    cells.push([a, b]);
+                }
+                match parts[begin..]
+                    .last_mut()
+                    .filter(|(_, last)| *last == known && known != Between::Passing)
+                {
+                    Some((part, _)) => part[1] = b,
+                    None => parts.push(([a, b], known)),
+                }
+            }
+        }
+        self.lines.cells = cells;
+        parts.into_iter().map(|(part, _)| part).collect()
+    }
+
+    /// Whether the least gaps inside the window are those of two profiles in the midplane, whose turns have formulas.
+    fn is_in_midplane(&self) -> bool {
+        let gap = &self.lines.gap;
+        gap.is_over_plane() && !gap.is_skewed() && self.window.contains(0.0)
+    }
+
+    /// Parts the range where the gap of the profiles may turn, end or step.
+    fn midplane_parts(&mut self) -> Vec<[LowestPlace; 2]> {
+        let mut parts = Vec::new();
+        for range in self.ranges() {
+            let turns = turning_points(self.lines.gap.placement(), range.low, range.high);
+            let places: Vec<LowestPlace> = turns.into_iter().map(|xi| self.place(xi, 0.0, 0.0)).collect();
+            for pair in places.windows(2) {
+                // A joint may be the end of a surface: the range from there on begins beside it.
+                let beside = pair[0].is_missing() && !pair[1].is_missing();
+                let from = if beside { self.place(pair[0].xi.next_up(), 0.0, 0.0) } else { pair[0] };
+                parts.push([from, pair[1]]);
+            }
+        }
+        self.lines.cells = parts.clone();
+        parts
+    }
+
+    /// Returns ξ or σ \[mm\] of the least gap of all; `None` if a body is missing all over the range. C is chosen if nothing is lower than it
+    /// to rounding.
+    ///
+    /// Method: as [`Self::parts`]; a range is left out where the bounds of its least gap lie above the least that is known.
+    pub(in crate::patch) fn least_of_all(mut self) -> Option<f64> {
+        let mut least: Option<LowestPlace> = None;
+        let take = |gap: &mut Self, least: &mut Option<LowestPlace>, xi: f64, eta: f64| {
+            let known = least.map_or(f64::INFINITY, |least| least.depth.high);
+            let place = gap.place(xi, eta, known);
+            if place.depth.high < known {
+                *least = Some(place);
+            }
+            place
+        };
+        let c = self.over.contains(0.0).then(|| take(&mut self, &mut least, 0.0, 0.0));
+        let within = |[a, b]: &[LowestPlace; 2]| a.xi < self.over.high && self.over.low < b.xi;
+        let mut waiting: Vec<_> = self.lines.cells.iter().filter(|cell| within(cell)).copied().collect();
+        if waiting.is_empty() {
+            waiting = self.ranges().into_iter().flat_map(|range| self.parted_at_c(range)).collect();
+        }
+        let over = self.over;
+        for place in waiting.iter_mut().flatten().filter(|place| over.contains(place.xi)) {
+            let known = least.map_or(f64::INFINITY, |least| least.depth.high);
+            if place.depth.low < known {
+                *place = self.lowest_place(place.xi, place.eta);
+            }
+            if place.depth.high < known {
+                least = Some(*place);
+            }
+        }
+        let mut count = 0;
+        while let Some([a, b]) = waiting.pop() {
+            count += 1;
+            let known = if self.is_in_midplane() {
+                true
+            } else if a.is_missing() || b.is_missing() {
+                self.between([&a, &b]).is_some()
+            } else {
+                self.rises_from_c([&a, &b]) || {
+                    let (slopes, depths) = self.depths([&a, &b], self.valley([&a, &b]));
+                    let higher = least.is_some_and(|least| depths.low >= least.depth.high - LEVEL);
+                    self.is_unknown(slopes, [&a, &b]) || higher || is_monotone(slopes)
+                }
+            };
+            if let Some(xi) = self.middle([&a, &b], count).filter(|_| !known) {
+                let middle = take(&mut self, &mut least, xi, halfway(a.eta, b.eta));
+                waiting.extend([[middle, b], [a, middle]]);
+            }
+        }
+        let least = least?;
+        if let Some(c) = c.filter(|c| c.depth.low <= least.depth.high + SHALLOW) {
+            return Some(c.xi);
+        }
+        Some(self.turn_near(least).unwrap_or(least.xi))
+    }
+
+    /// Returns both ends of a range, and C, which is in every patch, between them, in pairs of neighbours, the last pair first.
+    fn parted_at_c(&mut self, range: Interval) -> Vec<[LowestPlace; 2]> {
+        let [first, last] = range.ends().map(|xi| self.place(xi, 0.0, 0.0));
+        if !range.surrounds(0.0) {
+            return vec![[first, last]];
+        }
+        let c = self.place(0.0, 0.0, 0.0);
+        vec![[c, last], [first, c]]
+    }
+
+    /// Parts the range where the least gap may step. Right of such a place, a part begins beside it.
+    fn ranges(&self) -> Vec<Interval> {
+        let beside = |low: f64| if low == self.over.low { low } else { low.next_up() };
+        self.over
+            .parts(self.lines.gap.torn(self.over))
+            .map(|part| Interval::new(beside(part.low), part.high))
+            .collect()
+    }
+
+    /// Returns the middle between two places; `None` where they are too close together, or too many before them, to part them.
+    fn middle(&self, [a, b]: [&LowestPlace; 2], count: usize) -> Option<f64> {
+        let between = Interval::new(a.xi, b.xi);
+        let whole = self.share([a, b]) > SHORTEST && between.surrounds(between.middle());
+        (whole && count < MOST_RANGES).then(|| between.middle())
+    }
+
+    /// Returns what bounds of the least gap and its slope prove between two places; `None` where they prove nothing.
+    fn between(&self, [a, b]: [&LowestPlace; 2]) -> Option<Between> {
+        let inside = [a, b].map(LowestPlace::is_inside);
+        if a.is_missing() || b.is_missing() {
+            let out = inside == [false; 2];
+            let missing = a.is_missing() && b.is_missing() && self.is_narrow([a, b]);
+            return (out && (missing || self.is_above([a, b]))).then_some(Between::Outside);
+        }
+        let valley = self.valley([a, b]);
+        let lowest = valley.as_ref().map(|(valley, _)| *valley);
+        let (slopes, Interval { low, high }) = self.depths([a, b], valley);
+        let unknown = self.is_unknown(slopes, [a, b]);
+        let (all_out, all_in) = (unknown || low > -SHALLOW, unknown || high < SHALLOW);
+        let is_bowl = || lowest.is_some_and(|lowest| self.is_bowl([a, b], lowest));
+        match inside {
+            [true, true] => (all_in || is_bowl()).then_some(Between::Inside),
+            [false, false] => {
+                let above = slopes == Interval::ALL && self.is_above([a, b]);
+                (all_out || above).then_some(Between::Outside)
+            }
+            _ => (is_monotone(slopes) || (all_out && all_in) || is_bowl()).then_some(Between::Passing),
+        }
+    }
+
+    /// Returns a range of η \[mm\] that holds the lowest places between two, and bounds of the slopes there; `None` where none is proved, and
+    /// along normals, where both vary with the gap.
+    fn valley(&self, [a, b]: [&LowestPlace; 2]) -> Option<(Interval, BoxSlopes)> {
+        let known = Interval::around([a.eta, b.eta]);
+        let plain = self.lines.gap.has_plain_bounds();
+        plain.then(|| self.lines.valley(Interval::new(a.xi, b.xi), known, Interval::ALL)).flatten()
+    }
+
+    /// Whether the least gap is proved to be a convex function of ξ between two places, the lowest ones of which lie in `valley`.
+    fn is_bowl(&self, [a, b]: [&LowestPlace; 2], valley: Interval) -> bool {
+        let gap = &self.lines.gap;
+        let free = gap.is_over_plane() && self.window.holds(valley);
+        free && gap.is_bowl(Interval::new(a.xi, b.xi), valley, SHALLOW_VALLEY)
+    }
+
+    /// Whether nothing between two places, one of which is C, is proved to be lower than C: C is a stationary place of s, and where s is not
+    /// below 0 no gap along normals is.
+    fn rises_from_c(&self, [a, b]: [&LowestPlace; 2]) -> bool {
+        let xi = Interval::new(a.xi, b.xi);
+        xi.contains(0.0) && self.lines.is_bowl(xi, Interval::around([a.eta, b.eta]))
+    }
+
+    /// Whether heights alone prove that no line between two places meets the patch.
+    fn is_above(&self, [a, b]: [&LowestPlace; 2]) -> bool {
+        let (gap, xi) = (&self.lines.gap, Interval::new(a.xi, b.xi));
+        let lines = if gap.is_skewed() {
+            gap.within(xi).cut(self.window)
+        } else {
+            Interval::of(self.window.nearest(0.0))
+        };
+        gap.is_above(xi, lines)
+    }
+
+    /// Returns by which share of the range two places are apart.
+    fn share(&self, [a, b]: [&LowestPlace; 2]) -> f64 {
+        (b.xi - a.xi) / self.over.width()
+    }
+
+    /// Whether nothing more is to be known between two places.
+    fn is_unknown(&self, slopes: Interval, places: [&LowestPlace; 2]) -> bool {
+        slopes == Interval::ALL && self.is_narrow(places)
+    }
+
+    /// Whether two places are too near to each other for what lies between to count without bounds. C, which is in every patch, counts.
+    fn is_narrow(&self, [a, b]: [&LowestPlace; 2]) -> bool {
+        self.share([a, b]) <= UNKNOWN && !Interval::new(a.xi, b.xi).surrounds(0.0)
+    }
+
+    /// Returns bounds of the slope of the least gap between two places, and of the least gap less δ \[mm\].
+    fn depths(
+        &self,
+        [a, b]: [&LowestPlace; 2],
+        valley: Option<(Interval, BoxSlopes)>,
+    ) -> (Interval, Interval) {
+        let slopes = self.slopes([a, b], valley).unwrap_or(Interval::ALL);
+        let width = b.xi - a.xi;
+        let low = least_between([a, b].map(|place| place.depth.low), width, slopes);
+        let high = -least_between([a, b].map(|place| -place.depth.high), width, -slopes);
+        (slopes, Interval::new(low, high))
+    }
+
+    /// Returns bounds of the slope of the least gap between two places; `None` where none are known.
+    ///
+    /// Method: from line to line the least gap changes as the gap does along ξ at the lowest place. The lowest places of a range of ξ lie
+    /// between an η at which the gap falls along η all over that range, and one at which it rises.
+    fn slopes(&self, [a, b]: [&LowestPlace; 2], valley: Option<(Interval, BoxSlopes)>) -> Option<Interval> {
+        let (lines, xi) = (&*self.lines, Interval::new(a.xi, b.xi));
+        let held = |(eta, slopes): (Interval, BoxSlopes), gap: Interval| {
+            if self.window.holds(eta) {
+                return Some((slopes.lowest, slopes));
+            }
+            let slopes = lines.gap.slopes(xi, eta.map(|eta| self.window.nearest(eta)), gap)?;
+            Some((slopes.along, slopes))
+        };
+        if lines.gap.has_plain_bounds() {
+            return held(valley?, Interval::ALL).map(|(lowest, _)| lowest);
+        }
+        let gaps = a.depth.hull(b.depth);
+        let gaps = gaps.hull(gaps + lines.gap.approach());
+        let mut margin = xi.width();
+        for _ in 0..WIDENINGS {
+            let gap = gaps.grown(margin);
+            let valley = lines.valley(xi, Interval::around([a.eta, b.eta]), gap)?;
+            let width = valley.0.width();
+            let (lowest, slopes) = held(valley, gap)?;
+            if slopes.along.magnitude() * xi.width() + slopes.across.magnitude() * width <= margin {
+                return Some(lowest);
+            }
+            margin *= WIDER;
+        }
+        None
+    }
+
+    /// Returns the ξ or σ \[mm\] next to a place at which the least gap turns from falling to rising, unless it is larger there.
+    fn turn_near(&mut self, near: LowestPlace) -> Option<f64> {
+        let mut slope = |xi: f64| {
+            let eta = self.window.nearest(self.lines.lowest(xi, near.eta));
+            self.lines.gap.at(xi, eta).map_or(f64::NAN, |at| at.along)
+        };
+        let mut reach = FIRST_BRACKET * self.over.width();
+        for _ in 0..DOUBLINGS {
+            let Interval { low, high } = Interval::of(near.xi).grown(reach).cut(self.over);
+            if slope(low) < 0.0 && slope(high) > 0.0 {
+                let turn = bracketed(&mut slope, low, high)?;
+                return Some(turn)
+                    .filter(|&turn| self.lowest_place(turn, near.eta).depth.high <= near.depth.high);
+            }
+            reach *= 2.0;
+        }
+        None
+    }
+
+    /// Returns the least gap at ξ, as exactly as it takes to compare it with a depth \[mm\]. `guess` is about its η.
+    ///
+    /// Method: a parabola with the gap and slope at η falls below that gap by slope²/4a, with a the opening; slope²/a is allowed for.
+    fn place(&mut self, xi: f64, guess: f64, compared: f64) -> LowestPlace {
+        let lines = &mut *self.lines;
+        let mut eta = if guess.is_nan() { 0.0 } else { guess };
+        for _ in 0..if lines.gap.is_skewed() { STEPS } else { 0 } {
+            let Some(at) = lines.gap.at(xi, eta) else { break };
+            let allowed = at.across * at.across / lines.gap.opening;
+            if allowed <= FAR_ABOVE * (at.gap - compared).abs() && self.window.contains(eta) {
+                return LowestPlace { xi, eta, depth: Interval::new(at.gap - allowed, at.gap) };
+            }
+            eta -= at.across / (2.0 * lines.gap.opening);
+        }
+        self.lowest_place(xi, eta)
+    }
+
+    /// Returns the least gap at ξ, whose place is sought from a guess.
+    fn lowest_place(&mut self, xi: f64, guess: f64) -> LowestPlace {
+        let eta = self.lines.lowest(xi, guess);
+        LowestPlace { xi, eta, depth: Interval::of(self.lines.gap.gap(xi, self.window.nearest(eta))) }
+    }
+
+    /// Returns the ξ or σ \[mm\] between two places at which the least gap passes δ, and η of that gap; `None` where a body is missing.
+    ///
+    /// Method: Newton's steps inside a bracket.
+    fn root(&mut self, [a, b]: [&LowestPlace; 2]) -> Option<[f64; 2]> {
+        if !self.lines.gap.is_skewed() {
+            let floor = self.window.nearest(0.0);
+            return bracketed(|xi| self.lines.gap.gap(xi, floor), a.xi, b.xi).map(|xi| [xi, floor]);
+        }
+        let mut ends = [*a, *b];
+        let share = a.depth.high / (a.depth.high - b.depth.high);
+        let turn = (b.eta - a.eta) / (b.xi - a.xi);
+        let [mut next, mut eta] = [a.xi + share * (b.xi - a.xi), a.eta + share * (b.eta - a.eta)];
+        // Steps of both at once come close.
+        for _ in 0..STEPS {
+            let Some(at) = self.lines.gap.at(next, eta).filter(|_| self.window.contains(eta)) else { break };
+            let fall = at.across / (2.0 * self.lines.gap.opening);
+            let step = (at.gap - at.across * fall / 2.0) / at.along;
+            if !Interval::new(a.xi, b.xi).surrounds(next - step) {
+                break;
+            }
+            (next, eta) = (next - step, eta - fall - turn * step);
+        }
+        if eta.is_nan() {
+            eta = halfway(a.eta, b.eta);
+        }
+        for _ in 0..MOST_STEPS {
+            let between = Interval::new(ends[0].xi, ends[1].xi);
+            if !between.surrounds(next) {
+                next = between.middle();
+            }
+            if !between.surrounds(next) {
+                break;
+            }
+            let place = self.lowest_place(next, eta);
+            eta = place.eta;
+            let at = self.lines.gap.at(next, self.window.nearest(eta))?;
+            ends[usize::from(place.is_inside() == ends[1].is_inside())] = place;
+            let step = place.depth.high / at.along;
+            if place.depth.high == 0.0 || step.abs() <= f64::EPSILON * next.abs() {
+                return Some([next, self.window.nearest(eta)]);
+            }
+            next -= step;
+        }
+        let nearest = if ends[0].depth.high.abs() < ends[1].depth.high.abs() { ends[0] } else { ends[1] };
+        (!ends.iter().any(LowestPlace::is_missing)).then(|| [nearest.xi, self.window.nearest(nearest.eta)])
+    }
+
+    /// Returns the end of the patch between two lines, one of which meets it, and what bounds it there.
+    pub(super) fn end_between(&mut self, [a, b]: [&LowestPlace; 2]) -> (f64, End) {
+        if let Some([xi, eta]) = self.root([a, b]) {
+            let is_tip = !self.lines.gap.is_skewed() && eta == 0.0 || eta == self.lines.lowest(xi, eta);
+            let end = if is_tip || self.window.surrounds(eta) { End::Tip } else { End::Window };
+            return (xi, end);
+        }
+        // If one side has no surface, the end is the last ξ with a surface.
+        let (on, off) = if a.is_inside() { (a.xi, b.xi) } else { (b.xi, a.xi) };
+        let guess = if a.is_inside() { a.eta } else { b.eta };
+        let xi = last_where(|xi| self.lowest_place(xi, guess).is_inside(), on, off);
+        (xi, End::ProfileEnd)
+    }
+}
+
+/// Returns the middle of two numbers; that which is known if the other is NaN.
+fn halfway(a: f64, b: f64) -> f64 {
+    if a.is_nan() {
+        b
+    } else if b.is_nan() {
+        a
+    } else {
+        a + (b - a) / 2.0
+    }
+}
+
+/// Whether bounds of a slope leave it one sign.
+fn is_monotone(slopes: Interval) -> bool {
+    slopes.low >= 0.0 || slopes.high <= 0.0
+}
+
+/// Returns the least value that a function may have over a width if its values at both ends and bounds of its slope are known.
+fn least_between([a, b]: [f64; 2], width: f64, slopes: Interval) -> f64 {
+    let Interval { low, high } = slopes;
+    // The lowest lines through both ends; a bound that is infinite leaves the other line.
+    let place = ((b - high * width - a) / (low - high)).clamp(0.0, width);
+    let crossing = match [low, high].map(f64::is_finite) {
+        [true, true] => a + low.min(0.0) * place,
+        [true, false] => a + low.min(0.0) * width,
+        [false, true] => b - high.max(0.0) * width,
+        [false, false] => f64::NEG_INFINITY,
+    };
+    crossing.min(a).min(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformal::Reference;
+    use crate::error::Result;
+    use crate::patch::Slicer;
+    use crate::placement::Pair;
+    use crate::profile::standards;
+
+    /// Numbers of ranges and of places in each.
+    const RANGES: usize = 60;
+    const PLACES: usize = 8;
+
+    #[test]
+    fn the_least_gap_runs_within_its_bounds() -> Result<()> {
+        let pair =
+            Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?.on_roller(350.0)?;
+        for (rail_x, wheel_x) in [(4.0, 6.0), (-20.0, -24.0), (-34.0, -33.0), (-35.5, -42.0)] {
+            for (skew, reference) in [-0.05, 0.003, 0.02]
+                .into_iter()
+                .flat_map(|skew| [(skew, Reference::Plane), (skew, Reference::Rail)])
+            {
+                let placement = pair.placed(rail_x, wheel_x, skew)?;
+                let mut slicer = Slicer::over(&placement, 0.1, reference);
+                let over = slicer.reach().expect("bodies over each other").cut(Interval::symmetric(25.0));
+                let mut least = slicer.least_gap(over, Interval::ALL).expect("a skewed wheel");
+                let (whole, mut known) = (least.ranges(), 0);
+                let cells =
+                    (0..RANGES).flat_map(|k| [1.0, 0.05, 1e-3].map(|width| (over.step(k, RANGES), width)));
+                for cell in cells.map(|(low, width)| Interval::new(low, low + width)) {
+                    let [a, b] = cell.ends().map(|xi| least.lowest_place(xi, 0.0));
+                    let (slopes, depths) = least.depths([&a, &b], least.valley([&a, &b]));
+                    if !whole.iter().any(|range| range.holds(cell)) || slopes == Interval::ALL {
+                        continue;
+                    }
+                    known += 1;
+                    for xi in (0..=PLACES).map(|k| cell.step(k, PLACES)) {
+                        let depth = least.lowest_place(xi, 0.0).depth.high;
+                        let name = format!("{rail_x}, {skew}, {reference:?}, {xi} in {cell:?}");
+                        assert!(depths.grown(SHALLOW).contains(depth), "{name}: {depth} beyond {depths:?}");
+                    }
+                }
+                assert!(known > RANGES, "{rail_x}, {skew}, {reference:?}: {known}");
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn the_least_value_between_two_ends_lies_where_the_steepest_lines_meet() {
+        let least = |ends, slopes: [f64; 2]| least_between(ends, 2.0, slopes.into());
+        assert_eq!(least([1.0, 1.0], [-1.0, 1.0]), 0.0);
+        assert_eq!(least([1.0, 2.0], [0.5, 0.75]), 1.0);
+        assert_eq!(least([3.0, 1.0], [-2.0, f64::INFINITY]), -1.0);
+        assert_eq!(least([3.0, 1.0], [f64::NEG_INFINITY, 0.5]), 0.0);
+        assert_eq!(least([3.0, 1.0], [f64::NEG_INFINITY, f64::INFINITY]), f64::NEG_INFINITY);
+    }
+}
