@@ -282,6 +282,8 @@ impl<'a> Lines<'a> {
         self.valley_of(known, |eta| self.gap.slopes(xi, eta, gap))
     }
 
+    /// As [`Self::valley`], from bounds of the slopes over a range of η.
+    ///
     /// Method: the gap falls towards the places of a range of η where it may be level, and rises from there; all lie in that range.
     fn valley_of(
         &self,

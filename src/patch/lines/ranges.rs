@@ -67,7 +67,8 @@ impl LeastGap<'_, '_> {
     /// Parts the range into ranges, ascending, over each of which the least gap is below δ, or not, or passes it once.
     ///
     /// Method: between two places the least gap stays between straight lines of its largest and least slope. A range is halved until
-    /// these prove that the gap does not pass δ, or does not turn. Cost: the least gaps at some fifty places.
+    /// these prove that the gap does not pass δ, or does not turn, or until second derivatives prove it convex. Cost: the least gaps at some
+    /// thirty places.
     pub(super) fn parts(&mut self) -> Vec<[LowestPlace; 2]> {
         let mut parts: Vec<([LowestPlace; 2], Between)> = Vec::new();
         let mut cells = Vec::new();
@@ -132,7 +133,8 @@ impl LeastGap<'_, '_> {
     /// Returns ξ or σ \[mm\] of the least gap of all; `None` if a body is missing all over the range. C is chosen if nothing is lower than it
     /// to rounding.
     ///
-    /// Method: as [`Self::parts`]; a range is left out where the bounds of its least gap lie above the least that is known.
+    /// Method: as [`Self::parts`]; a range is left out where the bounds of its least gap lie above the least that is known, and at C where s is
+    /// convex.
     pub(in crate::patch) fn least_of_all(mut self) -> Option<f64> {
         let mut least: Option<LowestPlace> = None;
         let take = |gap: &mut Self, least: &mut Option<LowestPlace>, xi: f64, eta: f64| {
@@ -250,11 +252,12 @@ impl LeastGap<'_, '_> {
         free && gap.is_bowl(Interval::new(a.xi, b.xi), valley, SHALLOW_VALLEY)
     }
 
-    /// Whether nothing between two places, one of which is C, is proved to be lower than C: C is a stationary place of s, and where s is not
-    /// below 0 no gap along normals is.
+    /// Whether C, one of two places, is proved to be the lowest between them: it is a stationary place of s, and where s is not below 0 no
+    /// gap along normals is.
     fn rises_from_c(&self, [a, b]: [&LowestPlace; 2]) -> bool {
         let xi = Interval::new(a.xi, b.xi);
-        xi.contains(0.0) && self.lines.is_bowl(xi, Interval::around([a.eta, b.eta]))
+        let has_c = xi.contains(0.0) && self.window.contains(0.0);
+        has_c && self.lines.is_bowl(xi, Interval::around([a.eta, b.eta]))
     }
 
     /// Whether heights alone prove that no line between two places meets the patch.
@@ -298,8 +301,7 @@ impl LeastGap<'_, '_> {
 
     /// Returns bounds of the slope of the least gap between two places; `None` where none are known.
     ///
-    /// Method: from line to line the least gap changes as the gap does along ξ at the lowest place. The lowest places of a range of ξ lie
-    /// between an η at which the gap falls along η all over that range, and one at which it rises.
+    /// Method: from line to line the least gap changes as the gap does along ξ at the lowest place.
     fn slopes(&self, [a, b]: [&LowestPlace; 2], valley: Option<(Interval, BoxSlopes)>) -> Option<Interval> {
         let (lines, xi) = (&*self.lines, Interval::new(a.xi, b.xi));
         let held = |(eta, slopes): (Interval, BoxSlopes), gap: Interval| {
