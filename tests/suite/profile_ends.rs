@@ -72,8 +72,8 @@ fn ends_of_cut_profiles_are_doubted_where_they_touch() -> Result<()> {
         let patch =
             drawn.parts[0].site.contact.whole_patch().and_then(wheelrail::Patch::extent).expect("a patch");
         let (name, side) = (format!("{seed}: {offset} {cut} {on_wheel} {field}"), patch.xi.width());
-        // How far the patch reaches towards the cut.
-        let reach = if field { patch.xi.high } else { -patch.xi.low };
+        // How far the patch reaches towards the cut, along x.
+        let reach = [-patch.xi.low, patch.xi.high][usize::from(field)] * first.rail().contact_angle().cos();
         if !beyond && away > 1.1 * side && found.parts.len() == drawn.parts.len() && drawn.parts.len() == 1 {
             assert!(!doubts_end(&found), "{name}: {:?}", found.warnings());
             inside += usize::from(known);
