@@ -1,5 +1,6 @@
 //! The bands of a patch whose lines fall to one lowest place and rise from there.
 
+use super::ends::end_between;
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::patch::band::Band;
@@ -61,7 +62,7 @@ pub(in crate::patch) fn bands(outline: &mut Outline<'_>) -> Option<Vec<Band>> {
             open => open,
         };
         if a.is_inside() != b.is_inside() {
-            let (xi, end) = least.end_between([&a, &b]);
+            let (xi, end) = end_between(&mut least, [&a, &b]);
             let end = BandEnd { xi, at: xi, end: Some(end) };
             open = match open {
                 Some(begin) => {

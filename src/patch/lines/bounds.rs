@@ -20,7 +20,7 @@ use crate::patch::raised::Raised;
 use crate::placement::Placement;
 use crate::separation::wheel_surface::WheelSurface;
 
-/// Fall of a slope at kinks beyond which no gap is taken for a convex function.
+/// Fall of the slope at kinks beyond which second derivatives are not asked for: no gap without a radius below 1 mm is convex to 1e-13 mm.
 const MOST_FALL: f64 = 1e-6;
 
 /// Rounding of the places of surfaces, in roundings of the axle distance.
@@ -41,12 +41,12 @@ pub(super) struct BoxSlopes {
 
 /// Bounds of the slopes of a surface over a box.
 struct SurfaceSlopes {
-    /// Ranges of ξ and η \[mm\].
-    over: [Interval; 2],
+    /// Range of ξ \[mm\].
+    xi: Interval,
     /// a.
     along: Interval,
     /// b/η′ \[1/mm\].
-    bend: Interval,
+    growth: Interval,
     /// b.
     across: Interval,
 }
@@ -54,11 +54,13 @@ struct SurfaceSlopes {
 /// Bounds of the second derivatives of a gap or a surface over a box \[1/mm\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoxBends {
-    /// Along ξ twice, along ξ and η, along η twice.
+    /// Along ξ twice.
     along: Interval,
+    /// Along ξ and η.
     mixed: Interval,
+    /// Along η twice.
     across: Interval,
-    /// By how much slopes along ξ fall at kinks at most.
+    /// Sum of all falls of the slope along ξ at kinks.
     falls: f64,
 }
 
@@ -89,7 +91,7 @@ struct SweptBox {
     aside: Interval,
 }
 
-/// Bounds of the slopes of a surface over a box in its own axes.
+/// Bounds of the slopes of a surface over a box in the body's own axes.
 struct OwnSlopes {
     /// T.
     own: Interval,
@@ -126,12 +128,12 @@ impl<'a> Round<'a> {
     /// Returns bounds of the distances from the axle \[mm\] of points from ranges of their abscissae and heights \[mm\].
     fn radii_of(&self, abscissae: Interval, heights: Interval) -> Interval {
         let WheelSurface { axle, sin, cos, .. } = self.surface;
-        -(abscissae * Interval::of(sin) + heights * Interval::of(cos)) + axle
+        -(abscissae * sin + heights * cos) + axle
     }
 
     /// Returns the ranges of ξ′ and η′ \[mm\] of a box of ξ and η.
     fn turned(&self, xi: Interval, eta: Interval) -> [Interval; 2] {
-        let [sin, cos] = self.skew.map(Interval::of);
+        let [sin, cos] = self.skew;
         [xi * cos + eta * sin, eta * cos + -(xi * sin)]
     }
 
@@ -144,7 +146,7 @@ impl<'a> Round<'a> {
     /// Returns bounds of the abscissae \[mm\] of the points above a box, from bounds of their distances from the axle.
     fn abscissae(&self, along: Interval, aside: Interval, radii: Interval) -> Interval {
         let rounding = PLACE_ROUNDINGS * f64::EPSILON * self.surface.axle;
-        (along + -(sagittae(aside, radii) * Interval::of(self.surface.sin))).grown(rounding)
+        (along + -(sagittae(aside, radii) * self.surface.sin)).grown(rounding)
     }
 
     /// Returns the profile's points from which the surface over a box is swept; `None` where it ends or steps there, and too far from the
@@ -167,19 +169,18 @@ impl<'a> Round<'a> {
 
     /// Returns bounds of the surface's slopes along ξ′ and η′ over a box; `None` as for [`Self::feet`].
     fn slopes_over(&self, xi: Interval, eta: Interval) -> Option<SurfaceSlopes> {
-        let over = [xi, eta];
         if self.skew[0] == 0.0 && eta == Interval::of(0.0) {
             // In the midplane they are those of the profile.
             let along = self.tree.over(xi)?.slopes;
-            let [bend, across] = [Interval::of(1.0).quotient(self.radii), Interval::of(0.0)];
-            return along.magnitude().is_finite().then_some(SurfaceSlopes { over, along, bend, across });
+            let [growth, across] = [Interval::of(1.0).quotient(self.radii), Interval::of(0.0)];
+            return along.magnitude().is_finite().then_some(SurfaceSlopes { xi, along, growth, across });
         }
         let WheelSurface { sin, cos, .. } = self.surface;
         let swept = self.feet(xi, eta)?;
         let OwnSlopes { turned, facing, secant, .. } = self.own_slopes(&swept)?;
         let along = turned.map(|k| (k * cos - sin) / (cos + k * sin));
-        let bend = secant.quotient(swept.radii * facing);
-        Some(SurfaceSlopes { over, along, bend, across: bend * swept.aside })
+        let growth = secant.quotient(swept.radii * facing);
+        Some(SurfaceSlopes { xi, along, growth, across: growth * swept.aside })
     }
 
     /// Returns bounds of the slopes of the surface over a box in its own axes; `None` where it may fold back over the contact frame.
@@ -194,17 +195,18 @@ impl<'a> Round<'a> {
         (facing.low > 0.0).then_some(OwnSlopes { own, turned, facing, secant })
     }
 
-    /// Returns bounds of the second derivatives of the surface over a box along ξ and η; `None` as for [`Self::feet`].
+    /// Returns bounds of the second derivatives of the surface over a box along ξ and η; `None` as for [`Self::feet`], and where the slope of
+    /// the profile falls by more than `most_fall` at kinks.
     ///
     /// Method: with P the radius and c = cos v, f = cosθ + k sinθ, those along ξ′ and η′ are (P T′ + (k sin v)²)/(P c f³),
     /// b (k cosθ − (P T′ − T²) sinθ)/(P c f²) and (1 + b² (cos²θ + (P T′ − T²) sin²θ))/(P c f), and T′ = κ (1 + T²)^{3/2}.
-    fn bends_over(&self, xi: Interval, eta: Interval) -> Option<BoxBends> {
+    fn bends_over(&self, xi: Interval, eta: Interval, most_fall: f64) -> Option<BoxBends> {
         let WheelSurface { sin, cos, .. } = self.surface;
         let swept = self.feet(xi, eta)?;
         let OwnSlopes { own, turned, facing, secant } = self.own_slopes(&swept)?;
         let SweptBox { abscissae, radii, aside, .. } = swept;
         let falls: f64 = self.tree.kinks(abscissae).map(|kink| (-kink).max(0.0)).sum();
-        if falls > MOST_FALL {
+        if falls > most_fall {
             return None;
         }
         let bend = self.tree.bends(abscissae, own) * radii;
@@ -282,7 +284,7 @@ impl<'a> GapBounds<'a> {
         let below = match &self.under {
             Under::Rail(tree) => {
                 let along = -tree.over(xi)?.slopes;
-                SurfaceSlopes { over: [xi, eta], along, bend: none, across: none }
+                SurfaceSlopes { xi, along, growth: none, across: none }
             }
             Under::Roller(roller) => roller.slopes_over(xi, eta)?,
         };
@@ -297,18 +299,18 @@ impl<'a> GapBounds<'a> {
             along,
             lowest: along.cut(lowest),
             across: above.along * sin + above.across * cos + below.across,
-            level_at: self.level_at(&above, one, below.bend),
+            level_at: self.level_at(&above, one, below.growth),
         })
     }
 
     /// Returns bounds of η \[mm\] at which the gap of the wheel does not slope along η. Its slope is that of its height over `facing`, and
-    /// what is below it has the slope `bend` × η.
+    /// what is below it has the slope `growth` × η.
     ///
     /// Method: with η′ = η cosχ − ξ sinχ, a sinχ + (b/η′) η′ cosχ is linear in η.
-    fn level_at(&self, above: &SurfaceSlopes, facing: Interval, bend: Interval) -> Interval {
+    fn level_at(&self, above: &SurfaceSlopes, facing: Interval, growth: Interval) -> Interval {
         let [sin, cos] = self.wheel.skew;
-        let at_midplane = (above.along + -(above.over[0] * above.bend * cos)) * sin;
-        let spread = (above.bend * (cos * cos)).quotient(facing) + bend;
+        let at_midplane = (above.along + -(above.xi * above.growth * cos)) * sin;
+        let spread = (above.growth * (cos * cos)).quotient(facing) + growth;
         (-at_midplane).quotient(facing * spread)
     }
 
@@ -368,14 +370,14 @@ impl<'a> GapBounds<'a> {
                 .then(|| (own.map(f64::tan) * stretch, across.quotient(facing), facing))
         };
         let none = Interval::of(0.0);
-        let (below, [along_below, across_below], bend) = match &self.under {
+        let (below, [along_below, across_below], growth) = match &self.under {
             Under::Rail(_) => (none, [none; 2], none),
             Under::Roller(roller) => {
                 let below = Interval::new(0.0, eta.magnitude().powi(2) / roller.radii.low);
-                let SurfaceSlopes { along, across, bend, .. } =
+                let SurfaceSlopes { along, across, growth, .. } =
                     roller.slopes_over(foot + below * sines, eta)?;
                 let (along, across, facing) = of_body([along, across], -angle, -(below * curvature))?;
-                (below, [along, across], bend.quotient(facing))
+                (below, [along, across], growth.quotient(facing))
             }
         };
         let above = gap + -below;
@@ -391,7 +393,7 @@ impl<'a> GapBounds<'a> {
         // The slope of δ (1 − cos α).
         let rest = along_below + sines * curvature * approach;
         let [along, lowest] = [along, along.cut(lowest)].map(|slopes| slopes + rest);
-        let level_at = self.level_at(&over, facing, bend);
+        let level_at = self.level_at(&over, facing, growth);
         Some(BoxSlopes { along, lowest, across: across + across_below, level_at })
     }
 
@@ -417,13 +419,13 @@ impl<'a> GapBounds<'a> {
     }
 
     /// Returns whether the least s of a line is proved to be a convex function of ξ over a box of the tangent plane that holds the lowest
-    /// places; lowest places may part where another is up to `shallow` \[mm\] lower.
+    /// places. Kinks may make it up to `shallow` \[mm\] lower.
     pub(super) fn is_bowl(&self, xi: Interval, eta: Interval, shallow: f64) -> bool {
         self.bends(xi, eta).is_some_and(|bends| bends.is_bowl(shallow))
     }
 
     fn bends(&self, xi: Interval, eta: Interval) -> Option<BoxBends> {
-        let above = self.wheel.bends_over(xi, eta)?;
+        let above = self.wheel.bends_over(xi, eta, MOST_FALL)?;
         let below = match &self.under {
             Under::Rail(tree) => {
                 let slopes = tree.over(xi)?.slopes;
@@ -437,45 +439,18 @@ impl<'a> GapBounds<'a> {
                     falls,
                 })?
             }
-            Under::Roller(roller) => roller.bends_over(xi, eta)?,
+            Under::Roller(roller) => roller.bends_over(xi, eta, MOST_FALL)?,
         };
         Some(above.plus(&below))
     }
 
-    /// Returns whether every line over a range of ξ \[mm\] has one lowest place at most within a range of η.
+    /// Returns whether every line of a rail over a range of ξ \[mm\] has one lowest place at most within a range of η.
     ///
-    /// Method: with P(a) the radius of the profile at the abscissa a in its own axes, the point of the line at η, raised by δ, lies in the
-    /// wheel where F = w² + y² − P(a)² < 0. F″ > 0 if cot²χ/cos²θ + tan²θ > T² + P κ (1 + T²)^{3/2}, κ the hollow curvature. At a hollow
-    /// kink of J one of two places is lower by (J sinχ)²/2c at most, with `opening` the coefficient c/2 of η² at C; up to `shallow` \[mm\] it
-    /// does not count.
+    /// Method: what is raised from a rail is straight along η, so that the gap bends as the wheel does. At hollow kinks of J in all one of
+    /// two places is lower by (J sinχ)²/2c at most, with `opening` the coefficient c/2 of η² at C; up to `shallow` \[mm\] it does not count.
     pub(super) fn is_convex(&self, xi: Interval, eta: Interval, (opening, shallow): (f64, f64)) -> bool {
-        let ([sin, cos], WheelSurface { sin: tilt, cos: level, section, .. }) =
-            (self.wheel.skew, self.wheel.surface);
-        if sin == 0.0 {
-            return true;
-        }
-        let [along, aside] = self.wheel.turned(xi, eta);
-        let abscissae = self.wheel.abscissae(along, aside, self.wheel.radii);
-        let most = (cos / (sin * level)).powi(2) + (tilt / level).powi(2);
-        let flat = |slopes: Interval, hollow: f64| {
-            let upright = level - slopes.magnitude() * tilt.abs() <= 0.0;
-            let steepest = slopes.map(|m| (m * level + tilt) / (level - m * tilt)).magnitude();
-            let secant = 1f64.hypot(steepest);
-            !upright && steepest * steepest + self.wheel.radii.high * hollow * secant.powi(3) < most
-        };
-        let first = section.pieces.partition_point(|piece| piece.xi.high < abscissae.low);
-        let pieces = section.pieces[first..]
-            .iter()
-            .enumerate()
-            .take_while(|(_, piece)| piece.xi.low <= abscissae.high);
-        pieces.into_iter().all(|(k, piece)| {
-            let (part, branch) = (piece.xi.cut(abscissae), &section.branches[piece.branch]);
-            let hollow = branch.curvature_bounds(part).low.min(0.0).abs();
-            let slopes = section.slopes(first + k);
-            let before = (k > 0).then(|| section.end_slope(&section.pieces[first + k - 1], 1));
-            let kink = before.map_or(0.0, |before| (before - section.end_slope(piece, 0)).max(0.0));
-            (kink * sin).powi(2) / (4.0 * opening) <= shallow
-                && (flat(slopes, hollow) || flat(branch.derivative_bounds(part)[0].cut(slopes), hollow))
-        })
+        let sin = self.wheel.skew[0].abs();
+        let most_fall = (4.0 * opening * shallow).sqrt() / sin;
+        sin == 0.0 || self.wheel.bends_over(xi, eta, most_fall).is_some_and(|bends| bends.across.low > 0.0)
     }
 }

@@ -234,8 +234,8 @@ impl<'a> PatchGap<'a> {
         self.bounds.is_convex(self.feet(xi)[0], eta, (self.opening, shallow))
     }
 
-    /// Returns whether the least s of a line is proved to be a convex function of ξ over a range of ξ and one of η that holds the lowest
-    /// places; up to `shallow` \[mm\] it may fall below one.
+    /// Returns whether the least s of a line is proved to be a convex function of ξ over a box of the tangent plane that holds the lowest
+    /// places. Kinks may make it up to `shallow` \[mm\] lower.
     pub(super) fn is_bowl(&self, xi: Interval, eta: Interval, shallow: f64) -> bool {
         self.bounds.is_bowl(xi, eta, shallow)
     }

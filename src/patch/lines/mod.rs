@@ -6,6 +6,7 @@
 
 pub(super) mod bands;
 mod bounds;
+mod ends;
 mod gap;
 pub(super) mod joints;
 mod place;
@@ -261,10 +262,7 @@ impl<'a> Lines<'a> {
             }
             *budget -= 1;
             let slopes = self.gap.slopes(xi, eta, Interval::ALL);
-            let rises = slopes.is_some_and(|slopes| {
-                let across = slopes.across * Interval::of(sign);
-                across.low >= 0.0
-            });
+            let rises = slopes.is_some_and(|slopes| (slopes.across * sign).low >= 0.0);
             if rises || self.gap.is_high(xi, eta) {
                 continue;
             }

@@ -4,8 +4,7 @@ use super::gap::BoxSlopes;
 use super::place::LowestPlace;
 use super::{Lines, SHALLOW_VALLEY, WIDENINGS};
 use crate::numerics::interval::Interval;
-use crate::numerics::roots::{bracketed, last_where};
-use crate::patch::end::End;
+use crate::numerics::roots::bracketed;
 use crate::patch::turning_points;
 
 /// Depth \[mm\] up to which a part of the patch, or what parts it, does not count: some roundings of the bodies' coordinates.
@@ -28,7 +27,7 @@ const MOST_RANGES: usize = 1 << 14;
 const FAR_ABOVE: f64 = 0.75;
 
 /// Most steps to a lowest place that is known well enough to be compared.
-const STEPS: usize = 4;
+pub(super) const STEPS: usize = 4;
 
 /// Factor by which the range that is to hold the gap along normals is widened.
 const WIDER: f64 = 4.0;
@@ -38,9 +37,6 @@ const FIRST_BRACKET: f64 = 1e-6;
 
 /// Most doublings of that bracket: up to ranges that are not halved.
 const DOUBLINGS: usize = 11;
-
-/// Most steps to where the least gap passes δ.
-const MOST_STEPS: usize = 100;
 
 /// What is known of the least gap between two lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -367,75 +363,14 @@ impl LeastGap<'_, '_> {
     }
 
     /// Returns the least gap at ξ, whose place is sought from a guess.
-    fn lowest_place(&mut self, xi: f64, guess: f64) -> LowestPlace {
+    pub(super) fn lowest_place(&mut self, xi: f64, guess: f64) -> LowestPlace {
         let eta = self.lines.lowest(xi, guess);
         LowestPlace { xi, eta, depth: Interval::of(self.lines.gap.gap(xi, self.window.nearest(eta))) }
-    }
-
-    /// Returns the ξ or σ \[mm\] between two places at which the least gap passes δ, and η of that gap; `None` where a body is missing.
-    ///
-    /// Method: Newton's steps inside a bracket.
-    fn root(&mut self, [a, b]: [&LowestPlace; 2]) -> Option<[f64; 2]> {
-        if !self.lines.gap.is_skewed() {
-            let floor = self.window.nearest(0.0);
-            return bracketed(|xi| self.lines.gap.gap(xi, floor), a.xi, b.xi).map(|xi| [xi, floor]);
-        }
-        let mut ends = [*a, *b];
-        let share = a.depth.high / (a.depth.high - b.depth.high);
-        let turn = (b.eta - a.eta) / (b.xi - a.xi);
-        let [mut next, mut eta] = [a.xi + share * (b.xi - a.xi), a.eta + share * (b.eta - a.eta)];
-        // Steps of both at once come close.
-        for _ in 0..STEPS {
-            let Some(at) = self.lines.gap.at(next, eta).filter(|_| self.window.contains(eta)) else { break };
-            let fall = at.across / (2.0 * self.lines.gap.opening);
-            let step = (at.gap - at.across * fall / 2.0) / at.along;
-            if !Interval::new(a.xi, b.xi).surrounds(next - step) {
-                break;
-            }
-            (next, eta) = (next - step, eta - fall - turn * step);
-        }
-        if eta.is_nan() {
-            eta = halfway(a.eta, b.eta);
-        }
-        for _ in 0..MOST_STEPS {
-            let between = Interval::new(ends[0].xi, ends[1].xi);
-            if !between.surrounds(next) {
-                next = between.middle();
-            }
-            if !between.surrounds(next) {
-                break;
-            }
-            let place = self.lowest_place(next, eta);
-            eta = place.eta;
-            let at = self.lines.gap.at(next, self.window.nearest(eta))?;
-            ends[usize::from(place.is_inside() == ends[1].is_inside())] = place;
-            let step = place.depth.high / at.along;
-            if place.depth.high == 0.0 || step.abs() <= f64::EPSILON * next.abs() {
-                return Some([next, self.window.nearest(eta)]);
-            }
-            next -= step;
-        }
-        let nearest = if ends[0].depth.high.abs() < ends[1].depth.high.abs() { ends[0] } else { ends[1] };
-        (!ends.iter().any(LowestPlace::is_missing)).then(|| [nearest.xi, self.window.nearest(nearest.eta)])
-    }
-
-    /// Returns the end of the patch between two lines, one of which meets it, and what bounds it there.
-    pub(super) fn end_between(&mut self, [a, b]: [&LowestPlace; 2]) -> (f64, End) {
-        if let Some([xi, eta]) = self.root([a, b]) {
-            let is_tip = !self.lines.gap.is_skewed() && eta == 0.0 || eta == self.lines.lowest(xi, eta);
-            let end = if is_tip || self.window.surrounds(eta) { End::Tip } else { End::Window };
-            return (xi, end);
-        }
-        // If one side has no surface, the end is the last ξ with a surface.
-        let (on, off) = if a.is_inside() { (a.xi, b.xi) } else { (b.xi, a.xi) };
-        let guess = if a.is_inside() { a.eta } else { b.eta };
-        let xi = last_where(|xi| self.lowest_place(xi, guess).is_inside(), on, off);
-        (xi, End::ProfileEnd)
     }
 }
 
 /// Returns the middle of two numbers; that which is known if the other is NaN.
-fn halfway(a: f64, b: f64) -> f64 {
+pub(super) fn halfway(a: f64, b: f64) -> f64 {
     if a.is_nan() {
         b
     } else if b.is_nan() {
@@ -479,9 +414,13 @@ mod tests {
 
     #[test]
     fn the_least_gap_runs_within_its_bounds() -> Result<()> {
-        let pair =
-            Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?.on_roller(350.0)?;
-        for (rail_x, wheel_x) in [(4.0, 6.0), (-20.0, -24.0), (-34.0, -33.0), (-35.5, -42.0)] {
+        let rail = Pair::new(standards::rail("60E1")?, standards::wheel("S1002")?, 460.0)?;
+        let roller = rail.on_roller(350.0)?;
+        let points = [(4.0, 6.0), (-20.0, -24.0), (-34.0, -33.0), (-35.5, -42.0)];
+        let mut bowls = 0;
+        for (pair, (rail_x, wheel_x)) in
+            [&rail, &roller].into_iter().flat_map(|pair| points.map(|at| (pair, at)))
+        {
             for (skew, reference) in [-0.05, 0.003, 0.02]
                 .into_iter()
                 .flat_map(|skew| [(skew, Reference::Plane), (skew, Reference::Rail)])
@@ -495,20 +434,29 @@ mod tests {
                     (0..RANGES).flat_map(|k| [1.0, 0.05, 1e-3].map(|width| (over.step(k, RANGES), width)));
                 for cell in cells.map(|(low, width)| Interval::new(low, low + width)) {
                     let [a, b] = cell.ends().map(|xi| least.lowest_place(xi, 0.0));
-                    let (slopes, depths) = least.depths([&a, &b], least.valley([&a, &b]));
+                    let valley = least.valley([&a, &b]);
+                    let convex = valley.as_ref().is_some_and(|(valley, _)| least.is_bowl([&a, &b], *valley));
+                    let (slopes, depths) = least.depths([&a, &b], valley);
                     if !whole.iter().any(|range| range.holds(cell)) || slopes == Interval::ALL {
                         continue;
                     }
-                    known += 1;
-                    for xi in (0..=PLACES).map(|k| cell.step(k, PLACES)) {
-                        let depth = least.lowest_place(xi, 0.0).depth.high;
-                        let name = format!("{rail_x}, {skew}, {reference:?}, {xi} in {cell:?}");
-                        assert!(depths.grown(SHALLOW).contains(depth), "{name}: {depth} beyond {depths:?}");
+                    (known, bowls) = (known + 1, bowls + usize::from(convex));
+                    let name = format!("{rail_x}, {skew}, {reference:?}, {cell:?}");
+                    let places =
+                        (0..=PLACES).map(|k| least.lowest_place(cell.step(k, PLACES), 0.0).depth.high);
+                    let places: Vec<f64> = places.collect();
+                    for depth in &places {
+                        assert!(depths.grown(SHALLOW).contains(*depth), "{name}: {depth} beyond {depths:?}");
+                    }
+                    for three in places.windows(3).filter(|_| convex) {
+                        let bend = three[0] - 2.0 * three[1] + three[2];
+                        assert!(bend > -4.0 * SHALLOW, "{name}: {bend} where the least gap is convex");
                     }
                 }
                 assert!(known > RANGES, "{rail_x}, {skew}, {reference:?}: {known}");
             }
         }
+        assert!(bowls > RANGES, "{bowls}");
         Ok(())
     }
 
