@@ -23,8 +23,8 @@ fn is_zigzag(at: &[Point], k: usize) -> bool {
     first.abs().min(second.abs()) > BACKWARDS && first * second < 0.0
 }
 
-/// Returns the vertices where the path runs back: it turns by more than 120° there, and neither goes on to larger x on both sides, as a
-/// notch between blade and stock rail does, nor ends within a vertex. No notch is a zigzag.
+/// Returns the vertices where the path runs back: those at which it turns by more than 120°, without the edges of a notch between blade and
+/// stock rail. At these the path goes on along x on both sides, is no zigzag, and does not end within a vertex.
 pub(super) fn reversals(at: &[Point]) -> Vec<usize> {
     let (Some(first), Some(last)) = (at.first(), at.last()) else { return Vec::new() };
     let way = (last.x - first.x).signum();

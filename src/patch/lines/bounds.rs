@@ -303,8 +303,8 @@ impl<'a> GapBounds<'a> {
         })
     }
 
-    /// Returns bounds of η \[mm\] at which the gap of the wheel does not slope along η. Its slope is that of its height over `facing`, and
-    /// what is below it has the slope `growth` × η.
+    /// Returns bounds of the η \[mm\] at which a gap does not slope along η. Its slope is that of the wheel's height, divided by `facing`, and
+    /// `growth` × η of what is below.
     ///
     /// Method: with η′ = η cosχ − ξ sinχ, a sinχ + (b/η′) η′ cosχ is linear in η.
     fn level_at(&self, above: &SurfaceSlopes, facing: Interval, growth: Interval) -> Interval {

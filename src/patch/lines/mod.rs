@@ -280,9 +280,10 @@ impl<'a> Lines<'a> {
         self.valley_of(known, |eta| self.gap.slopes(xi, eta, gap))
     }
 
-    /// As [`Self::valley`], from bounds of the slopes over a range of η.
+    /// As [`Self::valley`]; `slopes` gives bounds of the slopes over a range of η.
     ///
-    /// Method: the gap falls towards the places of a range of η where it may be level, and rises from there; all lie in that range.
+    /// Method: a range is tried, and widened, until all places in it at which the gap may be level lie inside: then the gap falls at its lower
+    /// end and rises at its upper one.
     fn valley_of(
         &self,
         known: Interval,
