@@ -172,7 +172,7 @@ pub(super) fn of_repairs(points: &[Point], side: Side, options: &Options) -> Opt
     let left = checks::reject(&needed.left).err();
     let choices = match left {
         None => written(&needed.repairs),
-        Some(left) => format!("{} ({}: {})", left.expected, left.place, left.advice),
+        Some(left) => format!("{} ({}: {})", left.expected, left.place, by_hand(&left)),
     };
     Some(OpenQuestion { what: "repair", found: format!("{}: {}", error.place, error.found), choices })
 }
@@ -191,7 +191,7 @@ pub(super) fn reject(
     let needed = needed(points, side, options);
     match checks::reject(&needed.left) {
         Ok(()) => {
-            let by_hand = error.advice.split(", or allow").next().unwrap_or_default().to_owned();
+            let by_hand = by_hand(&error).to_owned();
             let others = needed.repairs.len() > 1 + options.repair.len();
             let by_hand = if others || by_hand.starts_with("allow") {
                 "give".to_owned()
@@ -206,12 +206,17 @@ pub(super) fn reject(
                 written(&needed.repairs),
                 left.place,
                 left.found,
-                left.advice
+                by_hand(&left)
             );
         }
-        Err(_) => {}
+        Err(_) => error.advice = by_hand(&error).to_owned(),
     }
     Err(error)
+}
+
+/// Returns what an error advises besides a repair: none mends what is left after all of them.
+fn by_hand(error: &Error) -> &str {
+    error.advice.split(", or allow").next().unwrap_or_default()
 }
 
 /// Writes repairs as a scene has them.

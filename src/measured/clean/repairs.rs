@@ -34,7 +34,8 @@ pub fn repair(points: &mut Vec<Point>, allowed: &[Repair]) -> Vec<Repaired> {
     let order = [Repair::DropDuplicates, Repair::Sort, Repair::RemoveSpikes, Repair::CutLoops];
     let mut done = Vec::new();
     for repair in order {
-        let wanted = allowed.contains(&repair) || repair == Repair::Sort && are_scans(points);
+        let scans = repair == Repair::Sort && are_scans(points);
+        let wanted = allowed.contains(&repair) || scans;
         if !wanted {
             continue;
         }
@@ -42,7 +43,7 @@ pub fn repair(points: &mut Vec<Point>, allowed: &[Repair]) -> Vec<Repaired> {
         for _ in 0..ROUNDS {
             let now = match repair {
                 Repair::DropDuplicates => drop_duplicates(points),
-                Repair::Sort => sort(points),
+                Repair::Sort => sort(points, scans),
                 Repair::RemoveSpikes => [remove_spikes(points), cut_overhang(points)].concat(),
                 Repair::CutLoops => cut_loops(points),
             };
@@ -71,7 +72,8 @@ fn drop_duplicates(points: &mut Vec<Point>) -> Vec<Point> {
     dropped
 }
 
-fn sort(points: &mut [Point]) -> Vec<Point> {
+/// Sorts the points where the path runs back over itself, and where it does so beside itself only if they are `scans`.
+fn sort(points: &mut [Point], scans: bool) -> Vec<Point> {
     let path = Path::of(points);
     let vertices = &path.course.at;
     let mut length = vec![0.0];
@@ -80,7 +82,9 @@ fn sort(points: &mut [Point]) -> Vec<Point> {
         (0..vertices.len()).map(|v| path.on[path.course.points_of(v).start]).collect();
     let mut moved = Vec::new();
     let mut sorted_to = 0;
-    for fold in folds(&path).into_iter().filter(|fold| fold.to > fold.from) {
+    for fold in
+        folds(&path).into_iter().filter(|fold| fold.to > fold.from && (scans || fold.beside.is_none()))
+    {
         // The path that leads to the fold, from where it was not sorted yet.
         let range = first_points.partition_point(|&k| k < sorted_to)
             ..first_points.partition_point(|&k| k <= fold.from);
