@@ -232,25 +232,41 @@ impl ContactTable {
     /// # Errors
     /// A number of yaws or of values that does not fit, and a number of no quantity.
     pub fn fill_many(&self, lateral: &[f64], yaw: &[f64], numbers: &[usize], out: &mut [f64]) -> Result<()> {
-        let wrong = |place: &str, found: String, expected: String| {
-            Err(Error::new(place, found, expected, "give as many as there are positions"))
-        };
-        if yaw.len() != 1 && yaw.len() != lateral.len() {
-            let expected = format!("one, or {} as of lateral", lateral.len());
-            return wrong("yaw", format!("{} values", yaw.len()), expected);
+        let each = lateral.len();
+        if out.len() != numbers.len() * each {
+            let expected =
+                format!("{}, {each} of each of {} quantities", numbers.len() * each, numbers.len());
+            return Err(ill_fitting("out", out.len(), expected));
         }
-        if out.len() != numbers.len() * lateral.len() {
-            let [positions, each] = [lateral.len(), numbers.len()];
-            let expected = format!("{}, {positions} of each of {each} quantities", each * positions);
-            return wrong("out", format!("{} values", out.len()), expected);
+        let mut columns: Vec<&mut [f64]> = out.chunks_exact_mut(each.max(1)).collect();
+        self.fill_columns(lateral, yaw, numbers, &mut columns)
+    }
+
+    /// Gives the quantities as [`ContactTable::fill_many`] does, with the values of each in a slice of its own.
+    ///
+    /// # Errors
+    /// A number of yaws or of values that does not fit, and a number of no quantity.
+    pub fn fill_columns(
+        &self,
+        lateral: &[f64],
+        yaw: &[f64],
+        numbers: &[usize],
+        columns: &mut [&mut [f64]],
+    ) -> Result<()> {
+        let each = lateral.len();
+        if yaw.len() != 1 && yaw.len() != each {
+            return Err(ill_fitting("yaw", yaw.len(), format!("one, or {each} as of lateral")));
         }
         if let Some(number) = numbers.iter().find(|number| **number >= self.quantities.len()) {
             let expected = format!("a number below {}", self.quantities.len());
             return Err(Error::new("numbers", number.to_string(), expected, "take those of `quantities`"));
         }
+        if let Some(other) = columns.iter().find(|column| column.len() != each) {
+            return Err(ill_fitting("columns", other.len(), format!("{each} as of lateral")));
+        }
         let mut parts: Vec<Vec<&mut [f64]>> = Vec::new();
-        parts.resize_with(lateral.len().div_ceil(TOGETHER), Vec::new);
-        for column in out.chunks_exact_mut(lateral.len().max(1)) {
+        parts.resize_with(each.div_ceil(TOGETHER), Vec::new);
+        for column in columns {
             parts.iter_mut().zip(column.chunks_mut(TOGETHER)).for_each(|(part, piece)| part.push(piece));
         }
         let arch = pulp::Arch::new();
@@ -325,6 +341,11 @@ impl ContactTable {
 #[inline(always)]
 fn stride(quantities: &[TableQuantity]) -> usize {
     quantities.len().next_multiple_of(LANES)
+}
+
+/// Makes the error of an argument with so many values.
+fn ill_fitting(place: &str, found: usize, expected: String) -> Error {
+    Error::new(place, format!("{found} values"), expected, "give as many as there are positions")
 }
 
 /// A part of each column. The work on it is compiled for each set of vector instructions.

@@ -9,14 +9,14 @@ use wheelrail::load::{Curvatures, Ellipse, curvatures, feasibility};
 use wheelrail::mesh::{Surface, equal_steps};
 use wheelrail::profile::Side;
 use wheelrail::scene;
-use wheelrail::separation::{EtaAxis, Evaluator, midplane_table, plan};
+use wheelrail::separation::{EtaAxis, Evaluator, midplane_table};
 use wheelrail::{Error, Placement, Window};
 
 use crate::arrays::{array, checked_shape, grid, values};
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, warn};
-use crate::filling::{checked_axes, fill, in_parts, named_method};
-use crate::long::{detached, waited};
+use crate::filling::{PART, by_points, checked_axes, fill, in_parts, named_method, planned};
+use crate::long::waited;
 use crate::patch::Patch;
 use crate::place::{ContactOrigin, FoundAt, PairContact, joined};
 use crate::profile::Profile;
@@ -196,11 +196,16 @@ impl Contact {
         let [xi, eta] = checked_axes(("xi", xi), eta, tolerance)?;
         let placement = self.placement()?;
         check_method(placement, method).or_raise()?;
+        checked_shape([("xi", &xi), ("eta", &eta)], 1)?;
+        let axis = EtaAxis::new(&eta);
+        let mut plan = planned(py, placement, (&xi, &axis), tolerance, method)?;
+        if placement.varying().is_some() {
+            let placement = placement.clone();
+            return by_points(py, xi, axis, move |xi, axis, out| plan.fill(&placement, xi, axis, out));
+        }
         let array = grid(py, [("xi", &xi), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
-        let axis = EtaAxis::new(&eta);
-        let mut plan = detached(py, || plan(placement, &xi, &axis, tolerance, method))?;
         fill(py, &mut plan, placement, (&xi, &axis), out)?;
         drop(values);
         Ok(array)
@@ -224,12 +229,19 @@ impl Contact {
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [sigma, eta] = checked_axes(("sigma", sigma), eta, tolerance)?;
-        let placement = self.placement()?;
+        let (placement, axis) = (self.placement()?, EtaAxis::new(&eta));
+        if placement.varying().is_some() {
+            checked_shape([("sigma", &sigma), ("eta", &eta)], 1)?;
+            let placement = placement.clone();
+            return by_points(py, sigma, axis, move |sigma, axis, out| {
+                fill_normal_gap(&NormalGap::new(&placement), sigma, axis, tolerance, out);
+            });
+        }
         let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
         let mut values = array.try_readwrite()?;
         let out = values.as_slice_mut()?;
-        let (gap, axis) = (NormalGap::new(placement), EtaAxis::new(&eta));
-        in_parts(py, &sigma, &axis, out, |sigma, out| {
+        let gap = NormalGap::new(placement);
+        in_parts(py, PART, &sigma, &axis, out, |sigma, out| {
             fill_normal_gap(&gap, sigma, &axis, tolerance, out);
         })?;
         drop(values);
@@ -243,11 +255,14 @@ impl Contact {
         py: Python<'py>,
         sigma: &Bound<'py, PyAny>,
     ) -> PyResult<(AxisArray<'py>, AxisArray<'py>, AxisArray<'py>)> {
-        let rail = RailArcLength::new(self.placement()?);
-        let nowhere = [f64::NAN; 3];
-        let point =
-            |&sigma: &f64| rail.point(sigma).map_or(nowhere, |at| [at.xi, at.zeta, at.sin.atan2(at.cos)]);
-        let points: Vec<[f64; 3]> = values("sigma", sigma)?.iter().map(point).collect();
+        let (placement, sigma) = (self.placement()?.clone(), values("sigma", sigma)?);
+        let points: Vec<[f64; 3]> = waited(py, move |_| {
+            let rail = RailArcLength::new(&placement);
+            let nowhere = [f64::NAN; 3];
+            let point =
+                |&sigma: &f64| rail.point(sigma).map_or(nowhere, |at| [at.xi, at.zeta, at.sin.atan2(at.cos)]);
+            Ok(sigma.iter().map(point).collect())
+        })?;
         Ok([0, 1, 2].map(|k| array(py, points.iter().map(|point| point[k]).collect())).into())
     }
 
@@ -369,7 +384,7 @@ impl Contact {
     /// Return the Report's midplane table as text: the transformed parameters, and both heights and the gap at every `xi` in mm,
     /// 101 values over both bodies if None.
     #[pyo3(signature = (xi = None))]
-    fn midsep(&self, xi: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
+    fn midsep(&self, py: Python<'_>, xi: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
         let placement = self.placement()?;
         if let Some(varying) = placement.varying() {
             let expected = "bodies of one profile each, which have a midplane";
@@ -378,7 +393,8 @@ impl Contact {
         let over = || placement.overlap().map_or_else(Vec::new, |over| equal_steps(over.low, over.high, 101));
         let xi = xi.map_or_else(|| Ok(over()), |xi| values("xi", xi))?;
         scene::check_axis("xi", &xi).or_raise()?;
-        Ok(midplane_table(placement, &xi))
+        let placement = placement.clone();
+        waited(py, move |_| Ok(midplane_table(&placement, &xi)))
     }
 
     /// Tell whether the bodies nowhere overlap when they touch at this contact: (4.1) of the Report, with the least

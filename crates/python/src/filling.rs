@@ -1,17 +1,26 @@
 //! Grids of a contact: their axes, the method, and how they are filled.
 
+use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use wheelrail::internal::MANY;
 use wheelrail::scene;
-use wheelrail::separation::{EtaAxis, Method, Plan};
+use wheelrail::separation::{EtaAxis, Method, Plan, plan};
 use wheelrail::{Error, Placement};
 
-use crate::arrays::values;
+use crate::arrays::{array, values};
 use crate::errors::{OrRaise, exception};
-use crate::long::shared;
+use crate::long::{detached, shared, waited};
 
-/// Points of a part: below 0.1 s by the slowest method on one thread.
-const PART: usize = 1 << 20;
+/// Points of a part of a skewed wheel, or by single points: some 0.1 s on one thread.
+pub(crate) const PART: usize = 1 << 19;
+/// Points of a part by strips of columns: as long, and more than the caches hold.
+const PART_OF_STRIPS: usize = 1 << 24;
+/// Points of a part of bodies that vary: 0.1 s on one thread.
+const PART_BY_POINTS: usize = 1 << 14;
+/// Longest axis along which a plan takes no longer than a part.
+const LONG_AXIS: usize = 1 << 16;
+/// Points that a short column costs as much as.
+const LEAST_COLUMN: usize = 64;
 
 /// Reads the axes of a grid \[mm\], and checks them and the tolerance.
 pub(crate) fn checked_axes(
@@ -29,7 +38,7 @@ pub(crate) fn checked_axes(
     Err(exception(Error::new("tolerance", found, expected, "1e-12 gives all digits")))
 }
 
-/// Fills a grid. Where the method is slow or the wheel skewed, large grids are filled in parts, with a check for Ctrl-C in between.
+/// Fills a grid of bodies that do not vary, in parts.
 pub(crate) fn fill(
     py: Python<'_>,
     plan: &mut Plan,
@@ -38,27 +47,71 @@ pub(crate) fn fill(
     out: &mut [f64],
 ) -> PyResult<()> {
     let strips = plan.choice.method < Method::Pointwise && placement.skew() == 0.0;
-    if strips || out.len() <= PART {
-        return shared(py, || plan.fill(placement, xi, axis, out));
-    }
-    in_parts(py, xi, axis, out, |xi, out| plan.fill(placement, xi, axis, out))
+    let points = if strips { PART_OF_STRIPS } else { PART };
+    in_parts(py, points, xi, axis, out, |xi, out| plan.fill(placement, xi, axis, out))
 }
 
-/// Fills a grid in parts of whole blocks of columns, which do not depend on each other, with a check for Ctrl-C in between.
+/// Fills a grid in parts of so many points, with a check for Ctrl-C in between.
 pub(crate) fn in_parts(
     py: Python<'_>,
+    points: usize,
     first: &[f64],
     axis: &EtaAxis,
     out: &mut [f64],
     mut fill: impl FnMut(&[f64], &mut [f64]) + Send,
 ) -> PyResult<()> {
-    let rows = axis.eta().len().max(1);
-    let columns = (PART / rows).max(1).next_multiple_of(MANY);
-    for (first, out) in first.chunks(columns).zip(out.chunks_mut(columns * rows)) {
+    for (first, out) in parts(points, first, axis, out) {
         shared(py, || fill(first, out))?;
         py.check_signals()?;
     }
     Ok(())
+}
+
+/// Plans a grid; along a long axis that takes long itself.
+pub(crate) fn planned(
+    py: Python<'_>,
+    placement: &Placement,
+    (xi, axis): (&[f64], &EtaAxis),
+    tolerance: f64,
+    method: Option<Method>,
+) -> PyResult<Plan> {
+    if xi.len().max(axis.eta().len()) <= LONG_AXIS {
+        return detached(py, || plan(placement, xi, axis, tolerance, method));
+    }
+    let (placement, xi, axis) = (placement.clone(), xi.to_vec(), axis.clone());
+    waited(py, move |_| Ok(plan(&placement, &xi, &axis, tolerance, method)))
+}
+
+/// Makes a grid of bodies that vary, whose points are computed one by one: new memory costs nothing beside them, so that Ctrl-C need
+/// not wait for the end of a part.
+pub(crate) fn by_points(
+    py: Python<'_>,
+    first: Vec<f64>,
+    axis: EtaAxis,
+    mut fill: impl FnMut(&[f64], &EtaAxis, &mut [f64]) + Send + 'static,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let shape = [first.len(), axis.eta().len()];
+    let values = waited(py, move |watch| {
+        let mut out = vec![0.0; shape[0] * shape[1]];
+        for (first, out) in parts(PART_BY_POINTS, &first, &axis, &mut out) {
+            fill(first, &axis, out);
+            watch.go_on()?;
+        }
+        Ok(out)
+    })?;
+    array(py, values).reshape(shape)
+}
+
+/// Divides a grid into parts of whole blocks of columns, which do not depend on each other.
+fn parts<'a>(
+    points: usize,
+    first: &'a [f64],
+    axis: &EtaAxis,
+    out: &'a mut [f64],
+) -> impl Iterator<Item = (&'a [f64], &'a mut [f64])> {
+    let rows = axis.eta().len().max(1);
+    let columns = (points / rows.max(LEAST_COLUMN)).max(1).next_multiple_of(MANY);
+    first.chunks(columns).zip(out.chunks_mut(columns * rows))
 }
 
 pub(crate) fn named_method(name: &str) -> PyResult<Option<Method>> {

@@ -15,7 +15,7 @@ use wheelrail::{Error, Placement};
 use crate::arrays;
 use crate::errors::{OrRaise, exception};
 use crate::files::files;
-use crate::long::{shared, waited};
+use crate::long::waited;
 use crate::values::{made, mesh, vectors};
 
 /// Two axes of a grid.
@@ -261,8 +261,12 @@ impl Patch {
     fn _repr_svg_(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let Ok(axes) = self.grid(None) else { return Ok(None) };
         let title = [self.title(), self.name.clone()];
-        let title = title.each_ref().map(String::as_str);
-        shared(py, || patch_picture(title, &self.placement, &self.patch, [&axes.xi, &axes.eta])).map(Some)
+        let (placement, patch) = (self.placement.clone(), self.patch.clone());
+        let picture = waited(py, move |_| {
+            let title = title.each_ref().map(String::as_str);
+            Ok(patch_picture(title, &placement, &patch, [&axes.xi, &axes.eta]))
+        })?;
+        Ok(Some(picture))
     }
 
     /// Return the picture of the patch as SVG: both profiles, the gap, and the lines of equal separation with the boundary.

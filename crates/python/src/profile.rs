@@ -230,7 +230,7 @@ impl Profile {
     /// Raises InputError for a step that is not positive, and one that makes more than 10**7 points.
     #[pyo3(signature = (step = 0.5))]
     fn points<'py>(&self, py: Python<'py>, step: f64) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let marks = self.marks(step)?;
+        let marks = self.marks(py, step)?;
         let mut points: Vec<[f64; 2]> = marks.iter().map(|mark| [mark.station.x, mark.station.z]).collect();
         // Both sides of a smooth joint are one point, in spite of rounding.
         let joint = JOINT_ROUNDINGS * f64::EPSILON * self.profile.extent();
@@ -244,7 +244,7 @@ impl Profile {
     /// Raises InputError as `points` does.
     #[pyo3(signature = (step = 0.5))]
     fn curvature<'py>(&self, py: Python<'py>, step: f64) -> PyResult<TwoColumns<'py>> {
-        let marks = self.marks(step)?;
+        let marks = self.marks(py, step)?;
         let column = |value: fn(&Mark) -> f64| arrays::array(py, marks.iter().map(value).collect());
         Ok((column(|mark| mark.s), column(|mark| mark.curvature)))
     }
@@ -387,7 +387,7 @@ impl Profile {
     }
 
     /// Gives marks along the profile, at most `step` \[mm\] apart.
-    fn marks(&self, step: f64) -> PyResult<Vec<Mark>> {
+    fn marks(&self, py: Python<'_>, step: f64) -> PyResult<Vec<Mark>> {
         /// Largest number of points of a profile.
         const MOST: f64 = 1e7;
         let least = 4.0 * self.profile.extent() / MOST;
@@ -395,7 +395,8 @@ impl Profile {
             let expected = format!("a step of {least:e} mm or more");
             return Err(exception(Error::new("step", step.to_string(), expected, "correct it")));
         }
-        Ok(trace(&self.profile, step))
+        let profile = self.profile.clone();
+        waited(py, move |_| Ok(trace(&profile, step)))
     }
 }
 

@@ -16,6 +16,8 @@ use crate::errors::{OrRaise, exception, say};
 use crate::long::{shared, waited};
 use crate::sweep::ROLL_ENDS;
 
+/// Positions of a part, between two of which Ctrl-C is looked for: 0.15 s on one thread of a table over yaw.
+const PART: usize = 1 << 16;
 /// Largest table that is read \[bytes\].
 const LARGEST: usize = 1 << 30;
 
@@ -98,10 +100,12 @@ pub(crate) struct ContactTable {
 #[pymethods]
 impl ContactTable {
     #[new]
-    fn new(path: PathBuf) -> PyResult<Self> {
-        let text = read_text(&path, LARGEST).or_raise()?;
-        let table = wheelrail::table::ContactTable::read(&text).map_err(|error| error.within(path.display()));
-        Ok(Self { table: table.or_raise()? })
+    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let table = waited(py, move |_| {
+            let text = read_text(&path, LARGEST)?;
+            wheelrail::table::ContactTable::read(&text).map_err(|error| error.within(path.display()))
+        })?;
+        Ok(Self { table })
     }
 
     /// Look the quantities up at lateral displacements in mm and yaws in rad, as many or one.
@@ -130,8 +134,18 @@ impl ContactTable {
         let numbers: Vec<usize> = (0..known.len()).filter(|q| wanted(known[*q].name)).collect();
         let columns = unset(py, numbers.len(), lateral.len())?;
         let mut filled = columns.readwrite();
-        let out = filled.as_slice_mut()?;
-        shared(py, || self.table.fill_many(&lateral, &yaw, &numbers, out))?.map_err(exception)?;
+        let mut columns_left: Vec<&mut [f64]> =
+            filled.as_slice_mut()?.chunks_exact_mut(lateral.len().max(1)).collect();
+        // Yaws of another number are refused as a whole.
+        let part = if [1, lateral.len()].contains(&yaw.len()) { PART } else { lateral.len().max(1) };
+        for (k, lateral) in lateral.chunks(part).enumerate() {
+            let yaw = if yaw.len() == 1 { &yaw } else { &yaw[k * part..yaw.len().min((k + 1) * part)] };
+            let mut columns: Vec<&mut [f64]> =
+                columns_left.iter_mut().filter_map(|column| column.split_off_mut(..lateral.len())).collect();
+            shared(py, || self.table.fill_columns(lateral, yaw, &numbers, &mut columns))?
+                .map_err(exception)?;
+            py.check_signals()?;
+        }
         drop(filled);
         self.by_name(py, numbers.iter().enumerate().map(|(k, q)| Ok((*q, columns.get_item(k)?))))
     }

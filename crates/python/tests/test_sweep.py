@@ -155,6 +155,16 @@ LONG = {
     "bar": "track.sweep(np.linspace(-8, 8, 9_000_000), conicity=False, progress=True)",
     "worn": "rough.sweep(np.linspace(-5, 5, 5_000_000), conicity=False)",
     "grid": "track.touch().right[0].separation(np.linspace(-9, 9, 9000), np.linspace(-9, 9, 9000), method='pointwise')",
+    "skewed": "yawed.separation(np.linspace(-9, 9, 1_000_000), [0.0, 1.0])",
+    "skewed gap": "yawed.normal_gap(np.linspace(-9, 9, 1_000_000), [0.0, 1.0])",
+    "strips": "track.touch().right[0].separation(np.linspace(-9, 9, 14_000), np.linspace(-9, 9, 14_000))",
+    "plan": "yawed.separation(np.linspace(-9, 9, 17), np.linspace(-9, 9, 1_000_000))",
+    "varying": "flat.separation(np.linspace(-9, 9, 2000), np.linspace(-9, 9, 2000))",
+    "varying gap": "flat.normal_gap(np.linspace(-9, 9, 100), np.linspace(-9, 9, 20_000))",
+    "rail": "track.touch().right[0].rail_surface(np.linspace(-9, 9, 30_000_000))",
+    "midplane": "track.touch().right[0].midsep(np.linspace(-9, 9, 1_000_000))",
+    "picture": "pictured.svg()",
+    "look up": "made(np.linspace(-1, 1, 10_000_000), np.zeros(10_000_000))",
     "normals": "track.touch().right[0].normals(np.linspace(-9, 9, 3000), np.linspace(-9, 9, 3000))",
     "pressure": "track.touch(1.0).right[0].patch(load=6e4).pressure(0.03)",
     "profile": "wr.read_profile(sys.argv[1], side='wheel', mirror=False, flip_z=False, origin='as-is')",
@@ -180,9 +190,16 @@ with open(sys.argv[1], 'w') as file:
     np.savetxt(file, np.transpose(dense))
 with open(sys.argv[1] + '.csv', 'w') as file:
     file.write('wheelset,left,right\\n' + ''.join(f'{k},S1002,S1002\\n' for k in range(5000)))
-if 'rough' in CALL:
+yawed = track.touch(1.0, yaw=0.02).right[0]
+if 'flat' in CALL:
+    flat = wr.Case(EXAMPLES + '/wheel_flat/wheel_flat.toml').contacts[0]
+if 'made' in CALL:
+    made = wr.table(EXAMPLES + '/scenes/wheelset.toml', (-1.0, 1.0), yaw=(-0.005, 0.005), tolerance=1e-2)
+if 'rough' in CALL or 'pictured' in CALL:
     worn = wr.read_profile(sys.argv[1], side='wheel', mirror=False, flip_z=False, origin='as-is', curve='interpolation', repair=['drop-duplicates'])
     rough = wr.Wheelset(wr.Pair(pair.rail, worn, 460.0), **distances)
+if 'pictured' in CALL:
+    pictured = rough.touch(1.0).right[0].patch(approach=0.05)
 print('begins', flush=True)
 try:
     eval(CALL)
@@ -195,7 +212,7 @@ except KeyboardInterrupt:
 
 @pytest.mark.parametrize("call", LONG)
 def test_ctrl_c_ends_what_takes_long_within_half_a_second(call: str, tmp_path: os.PathLike[str]) -> None:
-    size = {"profile": 900_000, "worn": 1500}.get(call, 100)
+    size = {"profile": 900_000, "worn": 1500, "picture": 100_000}.get(call, 100)
     program = PROGRAM.replace("CALL", repr(LONG[call])).replace("SIZE", str(size))
     arguments = [sys.executable, "-c", program, os.path.join(tmp_path, "wheel.txt"), str(ROOT / "examples")]
     with subprocess.Popen(arguments, stdout=subprocess.PIPE, text=True) as process:
