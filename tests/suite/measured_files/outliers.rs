@@ -159,8 +159,8 @@ impl BadScan {
 #[test]
 fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
     let (mut cases, mut silent, mut wrong, mut refused) = (0, 0, 0, 0);
-    // Runs on steep faces: of 739 with a low step before it, of the others beside the points over which the path runs back.
-    for case in seeds().chain([473, 674, 723, 739, 1267]) {
+    // Of 739 a run on a steep face has a low step before its first one.
+    for case in seeds().chain([739]) {
         let Some(bad) = BadScan::random(case) else { continue };
         cases += 1;
         let is_silent = said(&bad.read(&[])).is_empty();
@@ -192,7 +192,7 @@ fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
 #[test]
 fn a_path_that_steps_back_without_its_bad_runs_is_refused() {
     // Rows of a steep face a step too low or too high lie beside it: of 322 a run is found in part, of 352 none.
-    for case in [322, 352] {
+    for case in [322, 352, 473, 674, 723, 1267] {
         let read = BadScan::random(case).expect("bad rows").read(&[Repair::RemoveSpikes]);
         let said = read.err().map(|error| error.to_string()).unwrap_or_default();
         assert!(said.contains("beside itself"), "{case}: {said}");
