@@ -9,14 +9,14 @@ use wheelrail::load::{Curvatures, Ellipse, curvatures, feasibility};
 use wheelrail::mesh::{Surface, equal_steps};
 use wheelrail::profile::Side;
 use wheelrail::scene;
-use wheelrail::separation::{EtaAxis, Evaluator, midplane_table};
+use wheelrail::separation::{EtaAxis, Evaluator, midplane_table, plan};
 use wheelrail::{Error, Placement, Window};
 
 use crate::arrays::{array, checked_shape, grid, values};
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, warn};
-use crate::filling::{PART, by_points, checked_axes, fill, in_parts, named_method, planned};
-use crate::long::waited;
+use crate::filling::{PART, by_points, checked_axes, fill, in_parts, named_method};
+use crate::long::{detached, waited};
 use crate::patch::Patch;
 use crate::place::{ContactOrigin, FoundAt, PairContact, joined};
 use crate::profile::Profile;
@@ -198,7 +198,7 @@ impl Contact {
         check_method(placement, method).or_raise()?;
         checked_shape([("xi", &xi), ("eta", &eta)], 1)?;
         let axis = EtaAxis::new(&eta);
-        let mut plan = planned(py, placement, (&xi, &axis), tolerance, method)?;
+        let mut plan = detached(py, || plan(placement, &xi, &axis, tolerance, method))?;
         if placement.varying().is_some() {
             let placement = placement.clone();
             return by_points(py, xi, axis, move |xi, axis, out| plan.fill(&placement, xi, axis, out));

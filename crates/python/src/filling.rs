@@ -4,12 +4,12 @@ use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use wheelrail::internal::MANY;
 use wheelrail::scene;
-use wheelrail::separation::{EtaAxis, Method, Plan, plan};
+use wheelrail::separation::{EtaAxis, Method, Plan};
 use wheelrail::{Error, Placement};
 
 use crate::arrays::{array, values};
 use crate::errors::{OrRaise, exception};
-use crate::long::{detached, shared, waited};
+use crate::long::{shared, waited};
 
 /// Points of a part of a skewed wheel, or by single points: some 0.1 s on one thread.
 pub(crate) const PART: usize = 1 << 19;
@@ -17,8 +17,6 @@ pub(crate) const PART: usize = 1 << 19;
 const PART_OF_STRIPS: usize = 1 << 24;
 /// Points of a part of bodies that vary: 0.1 s on one thread.
 const PART_BY_POINTS: usize = 1 << 14;
-/// Longest axis along which a plan takes no longer than a part.
-const LONG_AXIS: usize = 1 << 16;
 /// Points that a short column costs as much as.
 const LEAST_COLUMN: usize = 64;
 
@@ -65,21 +63,6 @@ pub(crate) fn in_parts(
         py.check_signals()?;
     }
     Ok(())
-}
-
-/// Plans a grid; along a long axis that takes long itself.
-pub(crate) fn planned(
-    py: Python<'_>,
-    placement: &Placement,
-    (xi, axis): (&[f64], &EtaAxis),
-    tolerance: f64,
-    method: Option<Method>,
-) -> PyResult<Plan> {
-    if xi.len().max(axis.eta().len()) <= LONG_AXIS {
-        return detached(py, || plan(placement, xi, axis, tolerance, method));
-    }
-    let (placement, xi, axis) = (placement.clone(), xi.to_vec(), axis.clone());
-    waited(py, move |_| Ok(plan(&placement, &xi, &axis, tolerance, method)))
 }
 
 /// Makes a grid of bodies that vary, whose points are computed one by one: new memory costs nothing beside them, so that Ctrl-C need

@@ -158,7 +158,6 @@ LONG = {
     "skewed": "yawed.separation(np.linspace(-9, 9, 1_000_000), [0.0, 1.0])",
     "skewed gap": "yawed.normal_gap(np.linspace(-9, 9, 1_000_000), [0.0, 1.0])",
     "strips": "track.touch().right[0].separation(np.linspace(-9, 9, 14_000), np.linspace(-9, 9, 14_000))",
-    "plan": "yawed.separation(np.linspace(-9, 9, 17), np.linspace(-9, 9, 1_000_000))",
     "varying": "flat.separation(np.linspace(-9, 9, 2000), np.linspace(-9, 9, 2000))",
     "varying gap": "flat.normal_gap(np.linspace(-9, 9, 100), np.linspace(-9, 9, 20_000))",
     "rail": "track.touch().right[0].rail_surface(np.linspace(-9, 9, 30_000_000))",
