@@ -246,7 +246,7 @@ fn sunk(
 }
 
 /// Tells whether the roll of a case follows its loads.
-fn follows(case: &Case) -> bool {
+pub(super) fn follows(case: &Case) -> bool {
     let solved = matches!(&case.setup.arrangement, Arrangement::Wheelset { position, .. } if position.roll == Roll::Solve);
     solved && case.setup.roll_by_load != RollByLoad::No
 }

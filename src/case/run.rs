@@ -9,6 +9,7 @@ use super::found::Found;
 use super::grids::check_memory;
 use super::input::{ApproachBy, Arrangement, Case};
 use super::landmarks::SideLandmarks;
+use super::places::follows;
 use super::pressure::PartPressure;
 use super::site::{Site, sites};
 use super::site_doubts::{doubted, doubts_of, doubts_of_placing, other_lift};
@@ -140,13 +141,15 @@ impl Run {
             let own = self.parts.iter().map(|part| &part.site).filter(|site| site.side() == Some(side));
             own.filter_map(Site::vertical_load).sum::<f64>()
         });
+        let why = if follows(&self.case) {
+            "the roll is that of first touch, since no roll was found at which each carries half: none settles where two places become one \
+             region"
+        } else {
+            "the roll is the scene's; with roll = \"load\" the axle rolls until each carries half"
+        };
         ((right - left).abs() > UNEQUAL * load).then(|| {
-            format!(
-                "the left wheel carries {:.2} kN and the right one {:.2} kN of the axle's load: the roll is the scene's or that of first \
-                 touch; with roll = \"load\" the axle rolls until each carries half",
-                left / 1e3,
-                right / 1e3
-            )
+            let [left, right] = [left, right].map(|carried| carried / 1e3);
+            format!("the left wheel carries {left:.2} kN and the right one {right:.2} kN of the axle's load: {why}")
         })
     }
 

@@ -242,10 +242,11 @@ impl ContactTable {
         self.fill_columns(lateral, yaw, numbers, &mut columns)
     }
 
-    /// Gives the quantities as [`ContactTable::fill_many`] does, with the values of each in a slice of its own.
+    /// Gives the quantities as [`ContactTable::fill_many`] does, those with each number in a column of its own: a part of the positions
+    /// fills a part of every column.
     ///
     /// # Errors
-    /// A number of yaws or of values that does not fit, and a number of no quantity.
+    /// A number of yaws, of columns or of values that does not fit, and a number of no quantity.
     pub fn fill_columns(
         &self,
         lateral: &[f64],
@@ -260,6 +261,10 @@ impl ContactTable {
         if let Some(number) = numbers.iter().find(|number| **number >= self.quantities.len()) {
             let expected = format!("a number below {}", self.quantities.len());
             return Err(Error::new("numbers", number.to_string(), expected, "take those of `quantities`"));
+        }
+        if each > 0 && columns.len() != numbers.len() {
+            let (found, expected) = (format!("{} columns", columns.len()), format!("{}", numbers.len()));
+            return Err(Error::new("columns", found, expected, "give one for each of `numbers`"));
         }
         if let Some(other) = columns.iter().find(|column| column.len() != each) {
             return Err(ill_fitting("columns", other.len(), format!("{each} as of lateral")));

@@ -1,6 +1,7 @@
 //! NumPy arrays in and out.
 
 use numpy::{AllowTypeChange, Element, PyArray1, PyArray2, PyArrayLike1, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use wheelrail::{Error, ErrorKind};
 
@@ -95,6 +96,17 @@ pub(crate) fn checked_shape(
     );
     let error = Error::new(format!("{first}, {second}"), found, expected, "take the grid in several blocks");
     Err(exception(error.of_kind(ErrorKind::Limit)))
+}
+
+/// Gets memory for so many numbers, which another thread may fill.
+///
+/// # Errors
+/// MemoryError where the system does not give it.
+pub(crate) fn reserved(count: usize) -> PyResult<Vec<f64>> {
+    let mut memory = Vec::new();
+    let missing = |_| PyMemoryError::new_err(format!("no memory for {count} numbers"));
+    memory.try_reserve_exact(count).map_err(missing)?;
+    Ok(memory)
 }
 
 /// Makes an array (rows, columns) whose numbers are not set, for work that sets them all. NumPy asks for large pages, which Rust does not:

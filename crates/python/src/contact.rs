@@ -12,10 +12,10 @@ use wheelrail::scene;
 use wheelrail::separation::{EtaAxis, Evaluator, midplane_table, plan};
 use wheelrail::{Error, Placement, Window};
 
-use crate::arrays::{array, checked_shape, grid, values};
+use crate::arrays::{array, checked_shape, values};
 use crate::asked::{asked, checked_modulus};
 use crate::errors::{OrRaise, exception, warn};
-use crate::filling::{PART, by_points, checked_axes, fill, in_parts, named_method};
+use crate::filling::{PART, checked_axes, filled, named_method, part};
 use crate::long::{detached, waited};
 use crate::patch::Patch;
 use crate::place::{ContactOrigin, FoundAt, PairContact, joined};
@@ -196,19 +196,12 @@ impl Contact {
         let [xi, eta] = checked_axes(("xi", xi), eta, tolerance)?;
         let placement = self.placement()?;
         check_method(placement, method).or_raise()?;
-        checked_shape([("xi", &xi), ("eta", &eta)], 1)?;
         let axis = EtaAxis::new(&eta);
         let mut plan = detached(py, || plan(placement, &xi, &axis, tolerance, method))?;
-        if placement.varying().is_some() {
-            let placement = placement.clone();
-            return by_points(py, xi, axis, move |xi, axis, out| plan.fill(&placement, xi, axis, out));
-        }
-        let array = grid(py, [("xi", &xi), ("eta", &eta)])?;
-        let mut values = array.try_readwrite()?;
-        let out = values.as_slice_mut()?;
-        fill(py, &mut plan, placement, (&xi, &axis), out)?;
-        drop(values);
-        Ok(array)
+        let points = part(&plan, placement);
+        filled(py, placement, (("xi", xi), axis), points, move |placement, xi, axis, out| {
+            plan.fill(placement, xi, axis, out);
+        })
     }
 
     /// Compute the normal gap t(sigma, eta) along the rail's own turning normal, over the rail's surface, in mm, + apart: float64
@@ -230,22 +223,9 @@ impl Contact {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [sigma, eta] = checked_axes(("sigma", sigma), eta, tolerance)?;
         let (placement, axis) = (self.placement()?, EtaAxis::new(&eta));
-        if placement.varying().is_some() {
-            checked_shape([("sigma", &sigma), ("eta", &eta)], 1)?;
-            let placement = placement.clone();
-            return by_points(py, sigma, axis, move |sigma, axis, out| {
-                fill_normal_gap(&NormalGap::new(&placement), sigma, axis, tolerance, out);
-            });
-        }
-        let array = grid(py, [("sigma", &sigma), ("eta", &eta)])?;
-        let mut values = array.try_readwrite()?;
-        let out = values.as_slice_mut()?;
-        let gap = NormalGap::new(placement);
-        in_parts(py, PART, &sigma, &axis, out, |sigma, out| {
-            fill_normal_gap(&gap, sigma, &axis, tolerance, out);
-        })?;
-        drop(values);
-        Ok(array)
+        filled(py, placement, (("sigma", sigma), axis), PART, move |placement, sigma, axis, out| {
+            fill_normal_gap(&NormalGap::new(placement), sigma, axis, tolerance, out);
+        })
     }
 
     /// Find the rail's points by their arc length `sigma` from C, mm: xi and zeta in mm and alpha in rad, the angle of the

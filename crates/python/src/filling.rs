@@ -7,16 +7,14 @@ use wheelrail::scene;
 use wheelrail::separation::{EtaAxis, Method, Plan};
 use wheelrail::{Error, Placement};
 
-use crate::arrays::{array, values};
+use crate::arrays::{array, checked_shape, grid, reserved, values};
 use crate::errors::{OrRaise, exception};
 use crate::long::{shared, waited};
 
-/// Points of a part of a skewed wheel, or by single points: some 0.1 s on one thread.
+/// Points of a part of a grid, after each of which Ctrl-C is looked for: some 0.1 s on one thread, but of bodies that vary.
 pub(crate) const PART: usize = 1 << 19;
 /// Points of a part by strips of columns: as long, and more than the caches hold.
 const PART_OF_STRIPS: usize = 1 << 24;
-/// Points of a part of bodies that vary: 0.1 s on one thread.
-const PART_BY_POINTS: usize = 1 << 14;
 /// Points that a short column costs as much as.
 const LEAST_COLUMN: usize = 64;
 
@@ -36,53 +34,46 @@ pub(crate) fn checked_axes(
     Err(exception(Error::new("tolerance", found, expected, "1e-12 gives all digits")))
 }
 
-/// Fills a grid of bodies that do not vary, in parts.
-pub(crate) fn fill(
-    py: Python<'_>,
-    plan: &mut Plan,
-    placement: &Placement,
-    (xi, axis): (&[f64], &EtaAxis),
-    out: &mut [f64],
-) -> PyResult<()> {
+/// Returns the number of points of a part of a grid by the method of a plan.
+pub(crate) fn part(plan: &Plan, placement: &Placement) -> usize {
     let strips = plan.choice.method < Method::Pointwise && placement.skew() == 0.0;
-    let points = if strips { PART_OF_STRIPS } else { PART };
-    in_parts(py, points, xi, axis, out, |xi, out| plan.fill(placement, xi, axis, out))
+    if strips { PART_OF_STRIPS } else { PART }
 }
 
-/// Fills a grid in parts of so many points, with a check for Ctrl-C in between.
-pub(crate) fn in_parts(
-    py: Python<'_>,
+/// Makes a grid over two axes, the first with its name, and fills it in parts of so many points; Ctrl-C is looked for after each. A part
+/// of bodies that vary takes long: Ctrl-C does not wait for its end.
+///
+/// # Errors
+/// LimitError for more than 10⁹ points; MemoryError where there is less memory; KeyboardInterrupt.
+pub(crate) fn filled<'py>(
+    py: Python<'py>,
+    placement: &Placement,
+    ((name, first), axis): ((&str, Vec<f64>), EtaAxis),
     points: usize,
-    first: &[f64],
-    axis: &EtaAxis,
-    out: &mut [f64],
-    mut fill: impl FnMut(&[f64], &mut [f64]) + Send,
-) -> PyResult<()> {
-    for (first, out) in parts(points, first, axis, out) {
-        shared(py, || fill(first, out))?;
+    mut fill: impl FnMut(&Placement, &[f64], &EtaAxis, &mut [f64]) + Send + 'static,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let axes = [(name, &first[..]), ("eta", axis.eta())];
+    if placement.varying().is_some() {
+        let (shape, placement) = (checked_shape(axes, 1)?, placement.clone());
+        let mut out = reserved(shape.0 * shape.1)?;
+        let values = waited(py, move |watch| {
+            out.resize(shape.0 * shape.1, 0.0);
+            for (first, out) in parts(points, &first, &axis, &mut out) {
+                fill(&placement, first, &axis, out);
+                watch.go_on()?;
+            }
+            Ok(out)
+        })?;
+        return array(py, values).reshape(shape);
+    }
+    let array = grid(py, axes)?;
+    let mut values = array.try_readwrite()?;
+    for (first, out) in parts(points, &first, &axis, values.as_slice_mut()?) {
+        shared(py, || fill(placement, first, &axis, out))?;
         py.check_signals()?;
     }
-    Ok(())
-}
-
-/// Makes a grid of bodies that vary, whose points are computed one by one: new memory costs nothing beside them, so that Ctrl-C need
-/// not wait for the end of a part.
-pub(crate) fn by_points(
-    py: Python<'_>,
-    first: Vec<f64>,
-    axis: EtaAxis,
-    mut fill: impl FnMut(&[f64], &EtaAxis, &mut [f64]) + Send + 'static,
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    let shape = [first.len(), axis.eta().len()];
-    let values = waited(py, move |watch| {
-        let mut out = vec![0.0; shape[0] * shape[1]];
-        for (first, out) in parts(PART_BY_POINTS, &first, &axis, &mut out) {
-            fill(first, &axis, out);
-            watch.go_on()?;
-        }
-        Ok(out)
-    })?;
-    array(py, values).reshape(shape)
+    drop(values);
+    Ok(array)
 }
 
 /// Divides a grid into parts of whole blocks of columns, which do not depend on each other.

@@ -16,7 +16,7 @@ use crate::errors::{OrRaise, exception, say};
 use crate::long::{shared, waited};
 use crate::sweep::ROLL_ENDS;
 
-/// Positions of a part, between two of which Ctrl-C is looked for: 0.15 s on one thread of a table over yaw.
+/// Positions of a part of a look-up, after each of which Ctrl-C is looked for: 0.15 s on one thread of a table over yaw.
 const PART: usize = 1 << 16;
 /// Largest table that is read \[bytes\].
 const LARGEST: usize = 1 << 30;
@@ -134,14 +134,15 @@ impl ContactTable {
         let numbers: Vec<usize> = (0..known.len()).filter(|q| wanted(known[*q].name)).collect();
         let columns = unset(py, numbers.len(), lateral.len())?;
         let mut filled = columns.readwrite();
-        let mut columns_left: Vec<&mut [f64]> =
-            filled.as_slice_mut()?.chunks_exact_mut(lateral.len().max(1)).collect();
+        let count = lateral.len();
+        let mut left: Vec<&mut [f64]> = filled.as_slice_mut()?.chunks_exact_mut(count.max(1)).collect();
         // Yaws of another number are refused as a whole.
-        let part = if [1, lateral.len()].contains(&yaw.len()) { PART } else { lateral.len().max(1) };
-        for (k, lateral) in lateral.chunks(part).enumerate() {
-            let yaw = if yaw.len() == 1 { &yaw } else { &yaw[k * part..yaw.len().min((k + 1) * part)] };
-            let mut columns: Vec<&mut [f64]> =
-                columns_left.iter_mut().filter_map(|column| column.split_off_mut(..lateral.len())).collect();
+        let part = if [1, count].contains(&yaw.len()) { PART } else { count.max(1) };
+        for from in (0..count.max(1)).step_by(part) {
+            let range = from..count.min(from + part);
+            let yaw = if yaw.len() == count { &yaw[range.clone()] } else { &yaw[..] };
+            let next = left.iter_mut().filter_map(|column| column.split_off_mut(..range.len()));
+            let (lateral, mut columns) = (&lateral[range.clone()], next.collect::<Vec<_>>());
             shared(py, || self.table.fill_columns(lateral, yaw, &numbers, &mut columns))?
                 .map_err(exception)?;
             py.check_signals()?;

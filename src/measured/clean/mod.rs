@@ -9,3 +9,4 @@ mod order;
 pub mod repairs;
 pub mod reversals;
 pub(super) mod runs;
+mod walk;

@@ -4,15 +4,17 @@ use super::checks::{Check, Finding, distance, median};
 use super::course::Course;
 use super::reversals::reversals;
 use super::runs::Path;
+use super::walk::{PathWalk, from_chord, lengths};
 use crate::measured::read::points::Point;
 
 /// Distance \[mm\] between two courses over one place from which they are not one.
 const BESIDE: f64 = 0.03;
-/// Multiple of the median bend of a course, by noise or by its curvature, that a single vertex may be beside it: five deviations.
+/// How far a single vertex may lie beside a course, in median bends of the course, which noise and curvature make: five deviations of the
+/// noise.
 const BENDS: f64 = 4.0;
 /// Fewest vertices whose bends tell the noise.
 const NEAR: usize = 16;
-/// Most folds that are compared with the course that they run over, each of which may be the whole path.
+/// Most folds that are compared with the course over which they run back, of each as long as the path.
 const MOST_JUDGED: usize = 1000;
 
 /// The stretch of points `from`..=`to` between two reversals of the path. A single reversal has `from == to`.
@@ -20,8 +22,8 @@ const MOST_JUDGED: usize = 1000;
 pub(in crate::measured) struct Fold {
     pub from: usize,
     pub to: usize,
-    /// Distance \[mm\] of the points that run back from the course that they run over, if it is more than noise: they are no part of
-    /// it, and no order makes them one.
+    /// How far \[mm\] the points after `from` lie beside the course over which they run back, if that is more than noise: then they are off
+    /// the surface, and no order makes them part of it.
     pub beside: Option<f64>,
 }
 
@@ -103,57 +105,41 @@ pub(in crate::measured) fn folds(path: &Path) -> Vec<Fold> {
     let back = reversals(&path.course.at);
     let all = paired(&back, path.course.at.len());
     let few = all.len() <= MOST_JUDGED;
-    let place = |fold: Fold| {
-        let [from, to] = ends(fold, &path.course, &path.sound);
-        let beside = if few { beside(fold, &path.course.at) } else { None };
-        Fold { from: path.on[from], to: path.on[to], beside }
+    let place = |[from, to]: [usize; 2]| {
+        let judged = few && from < to;
+        let beside = if judged { beside(from, &path.course.at) } else { None };
+        let [from, to] = ends([from, to], &path.course, &path.sound).map(|k| path.on[k]);
+        Fold { from, to, beside }
     };
     all.into_iter().map(place).collect()
 }
 
-/// Returns the distance \[mm\] of the vertices after a fold from the course before it, as far as they run over that, if it is more than
-/// noise.
-fn beside(fold: Fold, at: &[Point]) -> Option<f64> {
-    let before = &at[..=fold.from];
-    // Foot on the chord from vertex k to the next one: its place along and the distance across, and the length.
-    let foot = |k: usize, point: &Point| {
-        let [a, b] = [&before[k], &before[k + 1]];
-        let (u, w, length) = (b.x - a.x, b.z - a.z, distance(a, b));
-        let [x, z] = [point.x - a.x, point.z - a.z];
-        [(x * u + z * w) / length, (u * z - w * x) / length, length]
-    };
-    let mut near = fold.from.checked_sub(1)?;
-    let mut off = Vec::new();
-    for point in at.iter().skip(fold.from + 1) {
-        while near > 0 && foot(near, point)[0] < 0.0 {
-            near -= 1;
-        }
-        while near + 2 < before.len() && foot(near, point)[0] > foot(near, point)[2] {
-            near += 1;
-        }
-        let [along, across, length] = foot(near, point);
-        if near == 0 && along < 0.0 || near + 2 == before.len() && along > length {
-            break;
-        }
-        off.push(across);
-    }
+/// Returns how far \[mm\] the vertices after a reversal lie beside the course before it, as far as they run over that; `None` where that is
+/// no more than noise.
+fn beside(reversal: usize, at: &[Point]) -> Option<f64> {
+    let before = &at[..=reversal];
+    let length = lengths(before);
+    let near = reversal.checked_sub(1)?;
+    let mut walk = PathWalk { at: before, length: &length, near };
+    let after = at[reversal + 1..].iter().map(|point| walk.walk_to(point));
+    let over = 0.0..=length[reversal];
+    let off: Vec<f64> =
+        after.take_while(|[along, _]| over.contains(along)).map(|[_, across]| across).collect();
     // What bends and noise of the course make of a distance.
-    let over = before.len().saturating_sub(NEAR.max(off.len()) + 2);
-    let bends: Vec<f64> =
-        (over..before.len() - 2).map(|k| (foot(k, &before[k + 2])[1] / 2.0).abs()).collect();
-    let count = off.len() as f64;
-    let least = BESIDE + BENDS * median(bends) / count.sqrt();
+    let from = near.saturating_sub(NEAR.max(off.len()));
+    let bends = before[from..].windows(3).map(|three| from_chord([&three[0], &three[1]], &three[2])[1] / 2.0);
+    let least = BESIDE + BENDS * median(bends.map(f64::abs).collect()) / (off.len() as f64).sqrt();
+    let count = off.len();
     let far = median(off).abs();
-    (count > 0.0 && fold.to > fold.from && far > least).then_some(far)
+    (count > 0 && far > least).then_some(far)
 }
 
 /// Returns the points at the two vertices of a fold. Of a vertex that stands for several points it is the one where the path jumps
 /// back, or one in the middle if the path does not jump.
-fn ends(fold: Fold, course: &Course, points: &[Point]) -> [usize; 2] {
-    let [first, last] = [fold.from, fold.to].map(|vertex| course.points_of(vertex));
+fn ends([from, to]: [usize; 2], course: &Course, points: &[Point]) -> [usize; 2] {
+    let [first, last] = [from, to].map(|vertex| course.points_of(vertex));
     let middle = |of: &std::ops::Range<usize>| if of.len() > 2 { of.start + of.len() / 2 } else { of.start };
-    if fold.from < fold.to && fold.to <= fold.from + 2 && (course.merged[fold.from] || course.merged[fold.to])
-    {
+    if from < to && to <= from + 2 && (course.merged[from] || course.merged[to]) {
         let length = |k: &usize| distance(&points[*k], &points[*k + 1]);
         let jump = (first.start..last.end - 1).max_by(|a, b| length(a).total_cmp(&length(b)));
         return jump.map_or([first.start, last.start], |k| [k, k + 1]);
@@ -161,13 +147,12 @@ fn ends(fold: Fold, course: &Course, points: &[Point]) -> [usize; 2] {
     [middle(&first), middle(&last)]
 }
 
-/// Pairs the reversals of a path of `n` points, so that the stretches between two of a pair are short: an overhang at an end is
+/// Pairs the reversals of a path of `n` vertices, so that the stretches between two of a pair are short: an overhang at an end is
 /// one reversal alone, whose stretch is the overhang.
-fn paired(back: &[usize], n: usize) -> Vec<Fold> {
-    let alone = |k: usize| Fold { from: k, to: k, beside: None };
-    let pairs = |of: &[usize]| -> Vec<Fold> {
-        of.chunks_exact(2).map(|pair| Fold { from: pair[0], to: pair[1], beside: None }).collect()
-    };
+fn paired(back: &[usize], n: usize) -> Vec<[usize; 2]> {
+    let alone = |k: usize| [k, k];
+    let pairs =
+        |of: &[usize]| -> Vec<[usize; 2]> { of.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect() };
     let overhang = |k: usize| k.min(n - 1 - k);
     let stretch = |k: usize| back[k + 1] - back[k];
     let between = |from: usize| (from..back.len() - 1).step_by(2).map(stretch).sum::<usize>();

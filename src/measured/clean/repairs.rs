@@ -6,6 +6,7 @@ use super::checks::{distance, same};
 use super::loops;
 use super::order::{Fold, are_scans, folds};
 use super::runs::Path;
+use super::walk::{PathWalk, lengths};
 use crate::measured::options::Repair;
 use crate::measured::read::points::Point;
 
@@ -76,8 +77,7 @@ fn drop_duplicates(points: &mut Vec<Point>) -> Vec<Point> {
 fn sort(points: &mut [Point], scans: bool) -> Vec<Point> {
     let path = Path::of(points);
     let vertices = &path.course.at;
-    let mut length = vec![0.0];
-    vertices.windows(2).for_each(|pair| length.push(length[length.len() - 1] + distance(&pair[0], &pair[1])));
+    let length = lengths(vertices);
     let first_points: Vec<usize> =
         (0..vertices.len()).map(|v| path.on[path.course.points_of(v).start]).collect();
     let mut moved = Vec::new();
@@ -111,7 +111,7 @@ fn sort_fold(
 ) -> usize {
     let mut along: Vec<f64> = Vec::new();
     for (k, point) in points.iter().enumerate().skip(fold.from + 1) {
-        let at = track.walk_to(point);
+        let [at, _] = track.walk_to(point);
         if k > fold.to && at >= track.end() {
             break;
         }
@@ -122,7 +122,7 @@ fn sort_fold(
     let mut low = fold.from + 1;
     let mut before: Vec<f64> = Vec::new();
     while low > sorted_to {
-        let at = track.walk_to(&points[low - 1]);
+        let [at, _] = track.walk_to(&points[low - 1]);
         if at < least {
             break;
         }
@@ -140,44 +140,6 @@ fn sort_fold(
         *slot = point;
     }
     high + 1
-}
-
-/// The smoothed path that leads to a fold, of two vertices or more, with a place on it that is walked from point to point.
-struct PathWalk<'a> {
-    at: &'a [Point],
-    /// Length of the path up to each vertex \[mm\].
-    length: &'a [f64],
-    /// Vertex of the place.
-    near: usize,
-}
-
-impl PathWalk<'_> {
-    /// Number of vertices ahead of the place that are looked at: noise may make the next one no nearer.
-    const AHEAD: usize = 8;
-
-    /// Returns the length up to the last vertex \[mm\].
-    fn end(&self) -> f64 {
-        self.length[self.length.len() - 1]
-    }
-
-    /// Walks to the place nearest to a point, and returns its length along the path \[mm\]; beyond the end along the last chord.
-    fn walk_to(&mut self, point: &Point) -> f64 {
-        let far = |k: usize| distance(&self.at[k], point);
-        loop {
-            let range =
-                self.near.saturating_sub(Self::AHEAD)..(self.near + Self::AHEAD + 1).min(self.at.len());
-            let nearest = range.min_by(|&a, &b| far(a).total_cmp(&far(b))).unwrap_or(self.near);
-            if nearest == self.near {
-                break;
-            }
-            self.near = nearest;
-        }
-        let a = self.near.min(self.at.len() - 2);
-        let [p, q] = [&self.at[a], &self.at[a + 1]];
-        let chord = distance(p, q);
-        let along = (point.x - p.x) * (q.x - p.x) + (point.z - p.z) * (q.z - p.z);
-        self.length[a] + if chord > 0.0 { along / chord } else { 0.0 }
-    }
 }
 
 fn remove_spikes(points: &mut Vec<Point>) -> Vec<Point> {
