@@ -242,8 +242,8 @@ impl ContactTable {
         self.fill_columns(lateral, yaw, numbers, &mut columns)
     }
 
-    /// Gives the quantities as [`ContactTable::fill_many`] does, those with each number in a column of its own: a part of the positions
-    /// fills a part of every column.
+    /// Gives the quantities as [`ContactTable::fill_many`] does, but the values of each in a slice of its own, so that many positions can
+    /// be filled part by part.
     ///
     /// # Errors
     /// A number of yaws, of columns or of values that does not fit, and a number of no quantity.

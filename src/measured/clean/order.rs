@@ -14,7 +14,7 @@ const BESIDE: f64 = 0.03;
 const BENDS: f64 = 4.0;
 /// Fewest vertices whose bends tell the noise.
 const NEAR: usize = 16;
-/// Most folds that are compared with the course over which they run back, of each as long as the path.
+/// Most folds that are compared with the course over which they run back, which may be the whole path for each.
 const MOST_JUDGED: usize = 1000;
 
 /// The stretch of points `from`..=`to` between two reversals of the path. A single reversal has `from == to`.
