@@ -32,14 +32,14 @@
 //! The separation around a contact, over a grid, and the patch there:
 //!
 //! ```
-//! use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+//! use wheelrail::separation::{EtaAxis, FULL_PRECISION, plan};
 //! use wheelrail::{Pair, Patch, Pose, Window, first_touch, inclination, mesh::equal_steps, standards};
 //!
 //! let rail = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
 //! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
 //! let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
 //! let (xi, eta) = (equal_steps(-8.0, 8.0, 81), EtaAxis::new(&equal_steps(-10.0, 10.0, 101)));
-//! let mut s = Values::new(81 * 101); // at i_xi * 101 + i_eta
+//! let mut s = vec![0.0; 81 * 101]; // at i_xi * 101 + i_eta
 //! plan(&placement, &xi, &eta, FULL_PRECISION, None).fill(&placement, &xi, &eta, &mut s);
 //! let patch = Patch::new(&placement, 0.05, &Window::UNBOUNDED);
 //!
@@ -110,14 +110,14 @@
 //!
 //! ```
 //! use wheelrail::export::{ContactSettings, Deck, Frame, GridFields, Header, Prescribed, contact_inp};
-//! use wheelrail::separation::{EtaAxis, FULL_PRECISION, LowerBody, Values, plan};
+//! use wheelrail::separation::{EtaAxis, FULL_PRECISION, LowerBody, plan};
 //! use wheelrail::{Pair, Patch, Pose, Window, first_touch, mesh::groups, standards};
 //!
 //! # let rail = standards::rail("60E1")?.rotated(wheelrail::inclination(1.0, 40.0)?);
 //! let pair = Pair::new(rail, standards::wheel("S1002")?, 460.0)?;
 //! let placement = first_touch(&pair, &Pose::new(0.0, 0.0, 0.0)?)?;
 //! let grid = groups(&Patch::new(&placement, 0.05, &Window::UNBOUNDED), 0.0, None)[0].axes(Some([0.5; 2]))?;
-//! let (eta, mut s) = (EtaAxis::new(&grid.eta), Values::new(grid.xi.len() * grid.eta.len()));
+//! let (eta, mut s) = (EtaAxis::new(&grid.eta), vec![0.0; grid.xi.len() * grid.eta.len()]);
 //! plan(&placement, &grid.xi, &eta, FULL_PRECISION, None).fill(&placement, &grid.xi, &eta, &mut s);
 //! let lower = LowerBody::under(&placement, &grid.xi, &grid.eta);
 //! let fields = GridFields::over(&grid.xi, &grid.eta, &s, &lower)?;
@@ -199,5 +199,4 @@ pub mod internal {
     pub use crate::patch::turning_points::turning_points;
     pub use crate::separation::methods::report_newton::missing as missing_for_report_newton;
     pub use crate::separation::methods::spectral::columns_by;
-    pub use crate::separation::values::Residence;
 }

@@ -14,7 +14,7 @@ use crate::patch::Patch;
 use crate::placement::Placement;
 use crate::separation::methods::quadratic::quadratic_form;
 use crate::separation::{EtaAxis, Method};
-use crate::separation::{Plan, Values, plan};
+use crate::separation::{Plan, plan};
 
 /// Seconds spent in the parts of an analysis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -39,7 +39,7 @@ pub struct Timings {
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// s \[mm\] at i_ξ · n_η + i_η; NaN where a body has no surface.
-    pub separation: Values,
+    pub separation: Vec<f64>,
     /// Method, error estimate and reason.
     pub plan: Plan,
     /// The patch in the window of the grid; `None` without an approach.
@@ -66,7 +66,7 @@ impl Analysis {
         let eta = EtaAxis::new(&site.grid.eta);
         let mut plan = plan(placement, xi, &eta, question.tolerance, question.method);
         let planned = Instant::now();
-        let mut separation = Values::new(xi.len() * eta.eta.len());
+        let mut separation = vec![0.0; xi.len() * eta.eta.len()];
         plan.fill(placement, xi, &eta, &mut separation);
         let filled = Instant::now();
         let patch = site.patch();

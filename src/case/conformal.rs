@@ -6,7 +6,7 @@ use super::site::{Site, ends};
 use crate::conformal::{NormalGap, RailPoint, fill_normal_gap};
 use crate::numerics::interval::Interval;
 use crate::patch::{Component, End, Patch, Window};
-use crate::separation::{EtaAxis, Evaluator, Values};
+use crate::separation::{EtaAxis, Evaluator};
 
 /// Turn of the rail's normal within the patch \[rad\] above which the plane's gap is too long by more than 3 %: 15°.
 const MOST_TURN: f64 = 15.0 * std::f64::consts::PI / 180.0;
@@ -17,7 +17,7 @@ pub struct Conformal {
     /// The rail's point and normal at every σ.
     pub rail: Vec<RailPoint>,
     /// t \[mm\] at i_σ · n_η + i_η; NaN where it is undefined.
-    pub gap: Values,
+    pub gap: Vec<f64>,
     /// Largest measured truncation error of t \[mm\].
     pub truncation: f64,
     /// The patch in the window of the grid; `None` without an approach, and on a grid of one row or column.
@@ -31,7 +31,7 @@ impl Conformal {
     pub(super) fn new(site: &Site, tolerance: f64) -> Option<Self> {
         let sigma = site.grid.sigma.as_ref()?;
         let gap = NormalGap::new(&site.contact.placement);
-        let mut values = Values::new(sigma.len() * site.grid.eta.len());
+        let mut values = vec![0.0; sigma.len() * site.grid.eta.len()];
         let truncation = fill_normal_gap(&gap, sigma, &EtaAxis::new(&site.grid.eta), tolerance, &mut values);
         let window = Window { xi: ends(sigma), eta: ends(&site.grid.eta) };
         let approach = site.contact.approach.filter(|_| site.has_extent());

@@ -15,7 +15,7 @@ use crate::patch::{Patch, Window};
 use crate::placement::Placement;
 use crate::profile::Section;
 use crate::search::TrackSide;
-use crate::separation::{Choice, Demand, EtaAxis, Evaluator, Method, Values};
+use crate::separation::{Choice, Demand, EtaAxis, Evaluator, Method};
 
 /// Points of a picture along ξ and along η: a line of equal separation is smooth to the eye, and C is among them where
 /// the grid is symmetric about it.
@@ -34,7 +34,7 @@ pub(super) struct Drawn {
     pressure: Option<PartPressure>,
     xi: Vec<f64>,
     eta: EtaAxis,
-    separation: Values,
+    separation: Vec<f64>,
     /// (ξ, s(ξ, 0))
     midplane: Vec<[f64; 2]>,
     /// Profiles of rail and wheel.
@@ -52,7 +52,7 @@ impl Drawn {
     /// Computes what is drawn of a placed pair over a window.
     fn of(placement: &Placement, window: &Window, choice: &Choice, contact: String) -> Self {
         let (xi, eta) = (places(window.xi), EtaAxis::new(&places(window.eta)));
-        let mut separation = Values::new(xi.len() * eta.eta.len());
+        let mut separation = vec![0.0; xi.len() * eta.eta.len()];
         choice.fill(placement, &xi, &eta, &mut separation);
         let mut evaluator = Evaluator::new(placement);
         let midplane = xi.iter().map(|&xi| [xi, evaluator.separation(xi, 0.0)]).collect();

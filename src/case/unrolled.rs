@@ -6,7 +6,7 @@ use super::run::Part;
 use super::site::ends;
 use crate::conformal::{NormalGap, fill_normal_gap};
 use crate::export::{ConformalPicture, Header, Nodes, PicturedContact, RailNormal};
-use crate::separation::{EtaAxis, Values};
+use crate::separation::EtaAxis;
 
 /// t over the window of the grid whatever the spacing of the solver's cells, and the rail's normals.
 pub(super) struct Unrolled<'a> {
@@ -14,7 +14,7 @@ pub(super) struct Unrolled<'a> {
     cells: [&'a [f64]; 2],
     sigma: Vec<f64>,
     eta: EtaAxis,
-    gap: Values,
+    gap: Vec<f64>,
     normals: Vec<RailNormal>,
     loops: Vec<Vec<[f64; 2]>>,
 }
@@ -26,7 +26,7 @@ impl<'a> Unrolled<'a> {
         let cells = [site.grid.sigma.as_deref()?, &site.grid.eta];
         let [sigma, eta] = cells.map(|values| places(ends(values)));
         let (normal_gap, eta) = (NormalGap::new(&site.contact.placement), EtaAxis::new(&eta));
-        let mut gap = Values::new(sigma.len() * eta.eta().len());
+        let mut gap = vec![0.0; sigma.len() * eta.eta().len()];
         fill_normal_gap(&normal_gap, &sigma, &eta, DRAWN_TOLERANCE, &mut gap);
         let normal = |&sigma: &f64| {
             let (at, gap) = (normal_gap.rail().point(sigma)?, normal_gap.gap(sigma, 0.0));

@@ -10,7 +10,7 @@ use crate::mesh::equal_steps;
 use crate::numerics::interval::Interval;
 use crate::patch::{Component, Patch, Window};
 use crate::search::TrackSide;
-use crate::separation::{EtaAxis, Evaluator, Values, plan};
+use crate::separation::{EtaAxis, Evaluator, plan};
 
 /// Most contacts that a page shows: more would take more than the 1.5 MB that a mail or a browser takes at once.
 const MOST_SHOWN: usize = 16;
@@ -145,7 +145,7 @@ fn contact(run: &Run, part: &Part, n: usize) -> ViewContact {
     let axis = EtaAxis::new(&eta);
     let question = &run.case.question;
     let mut plan = plan(placement, &xi, &axis, question.tolerance, question.method);
-    let mut separation = Values::new(n * n);
+    let mut separation = vec![0.0; n * n];
     plan.fill(placement, &xi, &axis, &mut separation);
     let mut below = Evaluator::new(placement);
     let both = run.case.profiles.left.is_some() && part.site.side() == Some(TrackSide::Left);
@@ -221,7 +221,7 @@ fn conformal(part: &Part, xi: &[f64], axis: &EtaAxis, tolerance: f64) -> Option<
     let normal_gap = NormalGap::new(&part.site.contact.placement);
     let rail = normal_gap.rail();
     let sigma: Vec<f64> = xi.iter().map(|&xi| rail.sigma(xi)).collect();
-    let mut gap = Values::new(xi.len() * axis.eta.len());
+    let mut gap = vec![0.0; xi.len() * axis.eta.len()];
     fill_normal_gap(&normal_gap, &sigma, axis, tolerance, &mut gap);
     Some(PageConformal {
         gap: gap.to_vec(),

@@ -6,6 +6,9 @@
 /// How many values are computed at once: they fill two of the widest vectors.
 pub const MANY: usize = 16;
 
+/// Number of values in the widest vector of any machine.
+pub const WIDEST: usize = 8;
+
 /// One quantity, N times.
 pub type Lanes<const N: usize = MANY> = [f64; N];
 

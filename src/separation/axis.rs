@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::values::{LINE, Values};
 use crate::numerics::interval::Interval;
+use crate::numerics::lanes::WIDEST;
 
 /// η and u = η² of every column, and whether one half of the values is the mirror image of the other.
 #[derive(Debug, Clone)]
@@ -11,7 +11,7 @@ pub struct EtaAxis {
     /// η \[mm\], ascending.
     pub(crate) eta: Vec<f64>,
     /// η² \[mm²\].
-    pub(crate) u: Values,
+    pub(crate) u: Vec<f64>,
     /// Index of the first η ≥ 0.
     pub(crate) first_positive: usize,
     /// Whether η_i = −η_{n−1−i} for all i.
@@ -24,12 +24,8 @@ impl EtaAxis {
     /// Prepares the axis for ascending η \[mm\].
     pub fn new(eta: &[f64]) -> Self {
         let symmetric = eta.iter().zip(eta.iter().rev()).all(|(a, b)| *a == -*b);
-        let mut u = Values::new(eta.len());
-        for (u, eta) in u.iter_mut().zip(eta) {
-            *u = eta * eta;
-        }
         Self {
-            u,
+            u: eta.iter().map(|eta| eta * eta).collect(),
             first_positive: eta.partition_point(|&eta| eta < 0.0),
             symmetric,
             reach: eta.iter().fold(0.0, |reach, eta| eta.abs().max(reach)),
@@ -40,6 +36,11 @@ impl EtaAxis {
     /// Returns η \[mm\], ascending.
     pub fn eta(&self) -> &[f64] {
         &self.eta
+    }
+
+    /// Returns whether columns are computed for one half of η alone, in whole vectors on every machine, and the other half is mirrored.
+    pub(crate) fn is_mirrored(&self) -> bool {
+        self.symmetric && self.eta.len().is_multiple_of(WIDEST)
     }
 
     /// Returns two ranges of indices whose u \[mm²\] lies in an interval, without its lower end unless that is 0: the first for
@@ -96,8 +97,8 @@ impl EtaAxis {
 pub(crate) fn mirror(column: &mut [f64], count: usize) {
     let (left, right) = column.split_at_mut(count);
     let right = &right[right.len() - count..];
-    let (lines, inner_left) = left.as_chunks_mut::<LINE>();
-    let (inner_right, mirrored) = right.as_rchunks::<LINE>();
+    let (lines, inner_left) = left.as_chunks_mut::<WIDEST>();
+    let (inner_right, mirrored) = right.as_rchunks::<WIDEST>();
     for (left, right) in lines.iter_mut().zip(mirrored.iter().rev()) {
         // Eight values are reversed at once, which becomes one vector operation.
         let [a, b, c, d, e, f, g, h] = *right;
@@ -128,7 +129,7 @@ mod tests {
             if axis.symmetric {
                 mirror(&mut column, axis.first_positive);
             }
-            assert_eq!(column, *axis.u);
+            assert_eq!(column, axis.u);
 
             for u in [0.0, 0.2, 1.0, 4.0, 5.0, 20.0] {
                 let inside = |i: &usize| axis.u[*i] <= u;

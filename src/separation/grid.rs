@@ -16,7 +16,6 @@ use super::methods::quadratic::Quadratic;
 use super::methods::report_newton::{self, ReportNewton};
 use super::methods::spectral::Spectral;
 use super::relief::Relief;
-use super::values::Residence;
 use crate::lofted::{Feet, FramedLoft};
 use crate::numerics::lanes::MANY;
 use crate::numerics::nan_max;
@@ -101,8 +100,7 @@ impl Choice {
     /// measured. A method without an error measure of its own is compared with single points if a body ends or the wheel steps
     /// within the grid.
     ///
-    /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits. It is fastest if `out`
-    /// is [`super::values::Values`].
+    /// It runs on the threads of the current rayon pool. Any number of threads gives the same bits.
     pub fn fill(&self, placement: &Placement, xi: &[f64], axis: &EtaAxis, out: &mut [f64]) -> f64 {
         if axis.eta.is_empty() {
             return 0.0;
@@ -153,10 +151,9 @@ impl Choice {
         }
         let largest = |strips: &Vec<Strip>| strips.iter().map(|strip| strip.truncation).fold(0.0, f64::max);
         let of_strips: f64 = strips.iter().map(largest).sum();
-        let residence = Residence::of(out.len());
         let kernel = || {
             summed(placement, axis, |k, relief| {
-                Box::new(Spectral::new(self.fitter(relief), axis, &strips[k], residence))
+                Box::new(Spectral::new(self.fitter(relief), axis, &strips[k]))
             })
         };
         if out.len() <= FEW_POINTS[0] {

@@ -30,7 +30,6 @@ mod relief;
 mod rounding;
 mod samples;
 pub(crate) mod span;
-pub(crate) mod values;
 pub(crate) mod wheel_surface;
 
 pub use axis::EtaAxis;
@@ -47,5 +46,4 @@ pub use lower::{LowerBody, LowerSurface};
 pub use midplane::{MidplaneRow, Transformed, midplane_rows, midplane_table, transformed_parameters};
 pub use plan::{Plan, plan};
 pub(crate) use relief::{Relief, ReliefPoint};
-pub use values::Values;
 pub(crate) use wheel_surface::{WheelSurface, sagitta};

@@ -81,7 +81,7 @@ impl Plan {
 /// # Examples
 /// ```
 /// # use wheelrail::{Arc, Half, Pair, Profile, Segment};
-/// use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+/// use wheelrail::separation::{EtaAxis, FULL_PRECISION, plan};
 /// # let rail = Arc::about([0.0, -300.0], 300.0, Half::Upper, [-35.0, 35.0])?;
 /// # let rail = Profile::new("crown", "", vec![Segment::arc(rail)])?;
 /// # let wheel = Profile::new("cylinder", "", vec![Segment::arc(Arc::line([-60.0, 0.0], [60.0, 0.0])?)])?;
@@ -89,7 +89,7 @@ impl Plan {
 /// let placement = pair.placed(0.0, 0.0, 0.0)?; // a crown of 300 mm below a cylinder of 460 mm
 /// let (xi, eta) = (vec![0.0, 2.0], EtaAxis::new(&[-5.0, 0.0, 5.0]));
 /// let mut plan = plan(&placement, &xi, &eta, FULL_PRECISION, None);
-/// let mut s = Values::new(6);
+/// let mut s = vec![0.0; 6];
 /// plan.fill(&placement, &xi, &eta, &mut s);
 /// assert_eq!(s[1], 0.0); // C itself: ξ = η = 0
 /// assert!((s[2] - (460.0 - f64::sqrt(460.0 * 460.0 - 5.0 * 5.0))).abs() < 1e-13);

@@ -6,7 +6,7 @@ use crate::common::holds;
 use proptest::prelude::*;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::standards;
-use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
 use wheelrail_report::verification::built_in_pairs;
 
 const CASES: u32 = 3000;
@@ -16,8 +16,8 @@ type Axis = (f64, f64, usize, Vec<f64>);
 
 fn axis(widest: f64) -> impl Strategy<Value = Axis> {
     let centre = prop_oneof![Just(0.0), -1.0..1.0f64];
-    // Columns of whole lines of the cache are mirrored where they are symmetric.
-    let count = prop_oneof![1..160usize, (1..20usize).prop_map(|lines| 8 * lines)];
+    // Columns of whole vectors are mirrored where they are symmetric.
+    let count = prop_oneof![1..160usize, (1..20usize).prop_map(|vectors| 8 * vectors)];
     (-3.0..widest, centre, count, prop::collection::vec(-1.0..1.0f64, 0..4))
 }
 
@@ -43,7 +43,7 @@ fn within_estimate(
 ) -> Result<f64, String> {
     let filled = |tolerance, method| {
         let mut plan = plan(placement, xi, axis, tolerance, method);
-        let mut s = Values::new(xi.len() * axis.eta().len());
+        let mut s = vec![0.0; xi.len() * axis.eta().len()];
         s.fill(f64::INFINITY);
         plan.fill(placement, xi, axis, &mut s);
         (s, plan.error)

@@ -1,25 +1,18 @@
 //! Columns by the code for every kind of machine: the same bits.
 
 use wheelrail::Result;
-use wheelrail::internal::Residence::{LastCache, Memory, SecondCache};
-use wheelrail::internal::{Residence, columns_by};
+use wheelrail::internal::columns_by;
 use wheelrail::measured::{self, CurveKind, Format, Options, write};
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Side, standards};
-use wheelrail::separation::{EtaAxis, Values};
+use wheelrail::separation::EtaAxis;
 
 /// Most joints beside which columns are placed. A spline has more joints, and so many columns would be in strips.
 const FEW_JOINTS: usize = 24;
 
-/// Fills a window, with columns beside its joints, by code for one kind of machine. The array is treated as being in
-/// one kind of memory; it begins `behind` values after the beginning of a cache line. Returns s and the largest number of
-/// spans of the strips' columns.
-fn filled(
-    placement: &Placement,
-    count: i32,
-    arch: pulp::Arch,
-    (residence, behind): (Residence, usize),
-) -> (Vec<f64>, usize) {
+/// Fills a window, with columns beside its joints, by code for one kind of machine. Returns s and the largest number of spans of
+/// the strips' columns.
+fn filled(placement: &Placement, count: i32, arch: pulp::Arch) -> (Vec<f64>, usize) {
     let steps = |reach: f64, n: i32| (0..n).map(move |k| reach * f64::from(2 * k - n + 1) / f64::from(n - 1));
     let mut xi: Vec<f64> = steps(12.0, 101).collect();
     // In these columns a joint is near η = 0.
@@ -30,9 +23,9 @@ fn filled(
     }
     xi.sort_by(f64::total_cmp);
     let axis = EtaAxis::new(&steps(15.0, count).collect::<Vec<_>>());
-    let mut out = Values::new(behind + xi.len() * axis.eta().len());
-    let spans = columns_by(placement, (arch, residence), &xi, &axis, &mut out[behind..]);
-    (out[behind..].to_vec(), spans)
+    let mut out = vec![0.0; xi.len() * axis.eta().len()];
+    let spans = columns_by(placement, arch, &xi, &axis, &mut out);
+    (out, spans)
 }
 
 /// Returns a spline through points of a profile.
@@ -58,18 +51,16 @@ fn every_machine_gives_the_same_bits() -> Result<()> {
     ];
     for ([rail, wheel], wheel_x, yaw, most_spans) in cases {
         let placement = Pair::new(rail, wheel, 460.0)?.placed(-11.0, wheel_x, yaw)?;
-        // The columns of the second count are whole cache lines, so that one half is the mirror image of the other.
+        // The columns of the second count are whole vectors, so that one half is the mirror image of the other.
         for count in [253, 248] {
-            let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar, (LastCache, 1));
+            let (plain, spans) = filled(&placement, count, pulp::Arch::Scalar);
             assert_eq!(spans, most_spans);
             assert!(plain.iter().all(|s| s.is_finite()));
             let same = |arch| {
-                [(SecondCache, 0), (LastCache, 0), (SecondCache, 1), (Memory, 0)].into_iter().all(|stored| {
-                    let (other, _) = filled(&placement, count, arch, stored);
-                    plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
-                })
+                let (other, _) = filled(&placement, count, arch);
+                plain.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits())
             };
-            assert!(same(pulp::Arch::Scalar) && same(pulp::Arch::new()));
+            assert!(same(pulp::Arch::new()));
             #[cfg(target_arch = "x86_64")]
             if let Some(v3) = pulp::x86::V3::try_new() {
                 assert!(same(pulp::Arch::V3(v3)));

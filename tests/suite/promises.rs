@@ -12,7 +12,7 @@ use wheelrail::mesh::equal_steps;
 use wheelrail::nalgebra::Vector2;
 use wheelrail::placement::{Pair, Placement};
 use wheelrail::profile::{Profile, Shape, Side, standards};
-use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
 use wheelrail_report::errors::{inside_contact, over_contact};
 use wheelrail_report::reference::ReferenceFile;
 use wheelrail_report::specimen::{Instrument, Specimen, SpecimenKind};
@@ -118,9 +118,9 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns s over the grid and its estimated error \[mm\].
-    fn filled(&self, tolerance: f64, method: Option<Method>) -> (Values, f64) {
+    fn filled(&self, tolerance: f64, method: Option<Method>) -> (Vec<f64>, f64) {
         let mut plan = plan(&self.placement, &self.xi, &self.axis, tolerance, method);
-        let mut s = Values::new(self.xi.len() * self.axis.eta().len());
+        let mut s = vec![0.0; self.xi.len() * self.axis.eta().len()];
         s.fill(f64::INFINITY);
         plan.fill(&self.placement, &self.xi, &self.axis, &mut s);
         (s, plan.error)

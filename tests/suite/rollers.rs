@@ -14,7 +14,7 @@ use wheelrail::patch::Slicer;
 use wheelrail::profile::standards;
 use wheelrail::scene::{self, Scene};
 use wheelrail::search::{Contact, ONE_CONTACT, Pose, Position, ProfilePair, Roll, Selection};
-use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, plan};
 use wheelrail::{Arc, Evaluator, Half, Interval, Pair, Patch, Placement, Profile, Segment, Window};
 use wheelrail_report::reference::ReferenceScene;
 
@@ -77,7 +77,7 @@ fn every_method_fills_the_separation_over_a_roller() {
         let xi: Vec<f64> = (0..61).map(|k| f64::from(k - 30) * 0.2).collect();
         let axis = EtaAxis::new(&xi);
         let mut plan = plan(&placement, &xi, &axis, FULL_PRECISION, None);
-        let mut s = Values::new(xi.len() * xi.len());
+        let mut s = vec![0.0; xi.len() * xi.len()];
         plan.fill(&placement, &xi, &axis, &mut s);
         let mut evaluator = Evaluator::new(&placement);
         for (i, &x) in xi.iter().enumerate() {

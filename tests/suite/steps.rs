@@ -7,7 +7,7 @@ use wheelrail::case::{Part, Run, SILENT};
 use wheelrail::internal::{Random, missing_for_report_newton};
 use wheelrail::placement::Placement;
 use wheelrail::scene;
-use wheelrail::separation::{EtaAxis, Evaluator, FULL_PRECISION, Method, Values, plan};
+use wheelrail::separation::{EtaAxis, Evaluator, FULL_PRECISION, Method, plan};
 
 use crate::campaign;
 use crate::common::repository;
@@ -76,9 +76,9 @@ impl Grid {
     }
 
     /// Fills the grid by a method: s and the estimate of its error \[mm\].
-    fn filled(&self, method: Option<Method>, tolerance: f64) -> (Values, f64) {
+    fn filled(&self, method: Option<Method>, tolerance: f64) -> (Vec<f64>, f64) {
         let mut plan = plan(&self.placement, &self.xi, &self.axis, tolerance, method);
-        let mut s = Values::new(self.xi.len() * self.axis.eta().len());
+        let mut s = vec![0.0; self.xi.len() * self.axis.eta().len()];
         s.fill(f64::INFINITY);
         plan.fill(&self.placement, &self.xi, &self.axis, &mut s);
         (s, plan.error)

@@ -9,7 +9,7 @@ use std::time::Instant;
 use wheelrail::case::{DoubtSet, SweepColumns};
 use wheelrail::search::ONE_CONTACT;
 use wheelrail::search::ParallelSweep;
-use wheelrail::separation::{EtaAxis, Values, plan};
+use wheelrail::separation::{EtaAxis, plan};
 use wheelrail::{
     Pair, Position, RailDistance, Roll, Selection, WheelDistance, WheelsetOnTrack, inclination, standards,
 };
@@ -38,7 +38,7 @@ fn grid(pair: &Pair) -> wheelrail::Result<f64> {
         .map(|_| {
             let start = Instant::now();
             let axis = EtaAxis::new(&eta);
-            let mut values = Values::new(xi.len() * axis.eta().len());
+            let mut values = vec![0.0; xi.len() * axis.eta().len()];
             plan(&placement, &xi, &axis, 1e-12, None).fill(&placement, &xi, &axis, &mut values);
             black_box(&values);
             1e6 * start.elapsed().as_secs_f64()

@@ -13,7 +13,7 @@ use crate::long::{shared, waited};
 
 /// Points of a part of a grid, after each of which Ctrl-C is looked for: some 0.1 s on one thread, but of bodies that vary.
 pub(crate) const PART: usize = 1 << 19;
-/// Points of a part by strips of columns: as long, and more than the caches hold.
+/// Points of a part by strips of columns: as long.
 const PART_OF_STRIPS: usize = 1 << 24;
 /// Points that a short column costs as much as.
 const LEAST_COLUMN: usize = 64;

@@ -443,8 +443,8 @@ fn method(m: &Measurements) -> PageSection {
              - Choosing method and degree is not in the times: {least:.0} µs at least, {middle:.0} µs in the middle, \
              {most:.0} µs at most per scene and grid, which counts on small grids. `[grid] method` skips no more than \
              part of it.\n\
-             - η axes are symmetric: a spectral column is set up once for both halves, and in grids that the second \
-             cache holds evaluated once where columns are whole lines of it, as with 200 a side. `pointwise` and \
+             - η axes are symmetric: a spectral column is set up once for both halves, and evaluated once where its \
+             values are a multiple of 8, as with 200 a side. `pointwise` and \
              `report-newton` do not use it, which favours the others by up to two.\n\
              - `report-newton` is the Report's iteration as printed, compiled by today's compiler; it looks its wheel \
              segment up at every iterate, from the last one found. Its tolerance is on the step.\n\

@@ -7,7 +7,7 @@ use rustix::time::{ClockId, clock_gettime};
 
 use wheelrail::mesh::equal_steps;
 use wheelrail::placement::Placement;
-use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, Values, plan};
+use wheelrail::separation::{Choice, EtaAxis, FULL_PRECISION, plan};
 
 /// Least number of runs of one contestant in all its races: three show a disturbed one.
 pub const LEAST_RUNS: usize = 3;
@@ -55,7 +55,7 @@ pub struct RaceTrack<'a> {
     placement: &'a Placement,
     xi: Vec<f64>,
     axis: EtaAxis,
-    out: Values,
+    out: Vec<f64>,
 }
 
 impl<'a> RaceTrack<'a> {
@@ -63,7 +63,7 @@ impl<'a> RaceTrack<'a> {
     pub fn new(placement: &'a Placement, [a, b]: [f64; 2], reach: f64, n: usize) -> Self {
         let xi = equal_steps(a, b, n);
         let axis = EtaAxis::new(&equal_steps(-reach, reach, n));
-        let mut out = Values::new(n * n);
+        let mut out = vec![0.0; n * n];
         out.fill(STORED);
         Self { placement, xi, axis, out }
     }

@@ -16,7 +16,7 @@ use wheelrail::placement::Placement;
 use wheelrail::profile::{Profile, standards};
 use wheelrail::scene::{parse, with_profiles};
 use wheelrail::search::{ONE_CONTACT, Pose, ProfilePair, Selection};
-use wheelrail::separation::{EtaAxis, FULL_PRECISION, Values, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, plan};
 
 /// Approach δ \[mm\].
 const APPROACH: f64 = 0.08;
@@ -164,7 +164,7 @@ pub fn with_parts<T>(case: &str, side: usize, then: impl FnOnce(&mut dyn FnMut(&
     let window = Window { xi: Interval::symmetric(HALF_WIDTHS[0]), eta: Interval::symmetric(HALF_WIDTHS[1]) };
     let axis = EtaAxis::new(&eta);
     let mut planned = plan(&placement, &xi, &axis, FULL_PRECISION, None);
-    let mut values = Values::new(side * side);
+    let mut values = vec![0.0; side * side];
     values.fill(0.0);
     let mut patch = Patch::new(&placement, APPROACH, &window);
     StripMesh::new(&placement, &patch, StripCounts::default())?;

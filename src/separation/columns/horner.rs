@@ -1,17 +1,12 @@
 //! Polynomials of single columns, and their evaluation over parts of a column by Horner's rule, with the widest vectors of
 //! the machine.
 
-use super::stream;
 use crate::numerics::chebyshev::MOST_POINTS;
+use crate::numerics::lanes::WIDEST;
 use crate::numerics::polynomial;
-use crate::separation::values::{LINE, lead};
 
 /// Most coefficients of a column. A span that needs more is close to a vertical tangent and is evaluated point by point.
 pub const MOST_COEFFICIENTS: usize = MOST_POINTS;
-
-/// Least number of values of a run that is stored whole cache line by cache line: for arrays in the caches, and for larger
-/// ones. Grids with shorter runs fit into the second cache, where nothing is gained.
-const LONG_RUNS: [usize; 2] = [512, 64];
 
 /// A polynomial s = base + v Σ c_k v^k over one span of a column, v = u − u_0.
 #[derive(Debug, Clone, Copy)]
@@ -93,48 +88,30 @@ impl pulp::WithSimd for SpanRun<'_> {
 impl PerDegree for SpanRun<'_> {
     #[inline(always)]
     fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
-        horner::<S, N, false>(simd, (self.begin, &self.c[..n]), self.u, self.out, false);
+        horner::<S, N, false>(simd, (self.begin, &self.c[..n]), self.u, self.out);
     }
 }
 
 /// Computes base + (u − u_0) Σ c_k (u − u_0)^k over a run of u by Horner's rule, with at most N coefficients. If `FIRST`, u_0 is
 /// zero.
 ///
-/// Multiply-adds are fused on every machine (by software if need be), so that all machines give the same bits. If `past`,
-/// long runs are stored past the caches.
+/// Multiply-adds are fused on every machine (by software if need be), so that all machines give the same bits.
 #[inline(always)]
 pub fn horner<S: pulp::Simd, const N: usize, const FIRST: bool>(
     simd: S,
     (begin, c): ([f64; 2], &[f64]),
     u: &[f64],
     out: &mut [f64],
-    past: bool,
 ) {
     let polynomial = Splat::<S, N, FIRST>::new(simd, begin, c);
     let Some(last) = u.len().checked_sub(S::F64_LANES) else {
         return polynomial.few(u, out);
     };
-    // Stores of long runs begin at cache lines, because a store across two lines takes twice as long. The vectors that fill
-    // the two ends may overlap the others.
-    let (end, long) = (u.len(), u.len() >= LONG_RUNS[usize::from(past)]);
-    let begin_lines = if long { lead(out) } else { 0 };
-    if past && long {
-        // Lines that partly belong to a neighbouring column are stored through the caches; all others past them. No line is
-        // stored in both ways.
-        let end_lines = end - (end - begin_lines) % LINE;
-        for part in [0..begin_lines, end_lines..end] {
-            polynomial.few(&u[part.clone()], &mut out[part]);
-        }
-        let u = S::as_simd_f64s(&u[begin_lines..end_lines]).0;
-        let out = S::as_mut_simd_f64s(&mut out[begin_lines..end_lines]).0;
-        return stream::write(out, u.iter().map(|&u| polynomial.value(u)));
+    polynomial.vectors(u, out);
+    // The vector that fills the end overlaps the others.
+    if !u.len().is_multiple_of(S::F64_LANES) {
+        polynomial.vectors(&u[last..], &mut out[last..]);
     }
-    let first = begin_lines.next_multiple_of(S::F64_LANES);
-    let rest = if (end - begin_lines).is_multiple_of(S::F64_LANES) { end } else { last };
-    for part in [0..first, rest..end] {
-        polynomial.vectors(&u[part.clone()], &mut out[part]);
-    }
-    polynomial.vectors(&u[begin_lines..], &mut out[begin_lines..]);
 }
 
 /// Computes Horner's rule over whole vectors. Values up to u_0 in the first vector stay unchanged, unless `FIRST` (u_0 is
@@ -185,12 +162,12 @@ impl<S: pulp::Simd, const N: usize, const FIRST: bool> Splat<S, N, FIRST> {
         }
     }
 
-    /// Computes at most as many values as a cache line holds, which is no less than a vector.
+    /// Computes fewer values than a vector holds.
     #[inline(always)]
     fn few(&self, u: &[f64], out: &mut [f64]) {
-        let [mut line, mut s] = [[0.0; LINE]; 2];
-        line[..u.len()].copy_from_slice(u);
-        self.vectors(&line, &mut s);
+        let [mut vector, mut s] = [[0.0; WIDEST]; 2];
+        vector[..u.len()].copy_from_slice(u);
+        self.vectors(&vector, &mut s);
         out.copy_from_slice(&s[..u.len()]);
     }
 

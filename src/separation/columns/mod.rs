@@ -4,7 +4,6 @@ pub(super) mod fit;
 pub(crate) mod horner;
 pub(super) mod neighbours;
 pub(crate) mod skewed;
-mod stream;
 pub(super) mod strip;
 pub(super) mod strips;
 pub(super) mod truncation;

@@ -84,17 +84,6 @@ impl ColumnPolynomials {
     }
 }
 
-/// How columns are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Writing {
-    /// One half of each column, in whole vectors, and the other one as its mirror image.
-    Outwards,
-    /// From the first value to the last one.
-    Whole,
-    /// From the first value to the last one, past the caches where runs are long.
-    PastCaches,
-}
-
 /// Neighbouring columns of one strip that are to be evaluated. The work is compiled for each kind of machine.
 ///
 /// This is a struct and not a closure: the compiler may not inline a closure, which would then lack the machine's widest
@@ -105,7 +94,6 @@ pub struct StripColumns<'a> {
     /// ξ of the columns \[mm\], at most [`MANY`].
     pub xi: &'a [f64],
     pub axis: &'a EtaAxis,
-    pub writing: Writing,
     /// Memory for the polynomials of every span, overwritten.
     pub scratch: &'a mut Vec<ColumnPolynomials>,
     /// s \[mm\], column by column, overwritten.
@@ -117,14 +105,14 @@ impl pulp::WithSimd for StripColumns<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { relief, strip, xi, axis, writing, scratch: polynomials, out } = self;
+        let Self { relief, strip, xi, axis, scratch: polynomials, out } = self;
         polynomials.resize(strip.spans, ColumnPolynomials::ZERO);
         strip.polynomials(relief, xi, axis.reach * axis.reach, polynomials);
         let n = strip.coefficients;
         if strip.spans == 1 {
-            simd.vectorize(Evaluation::<true> { polynomials, n, axis, writing, out });
+            simd.vectorize(Evaluation::<true> { polynomials, n, axis, out });
         } else {
-            simd.vectorize(Evaluation::<false> { polynomials, n, axis, writing, out });
+            simd.vectorize(Evaluation::<false> { polynomials, n, axis, out });
         }
     }
 }
@@ -187,7 +175,6 @@ pub struct Evaluation<'a, const SINGLE: bool> {
     /// Number of their coefficients.
     pub n: usize,
     pub axis: &'a EtaAxis,
-    pub writing: Writing,
     /// s \[mm\], column by column, overwritten.
     pub out: &'a mut [f64],
 }
@@ -204,7 +191,7 @@ impl<const SINGLE: bool> pulp::WithSimd for Evaluation<'_, SINGLE> {
 impl<const SINGLE: bool> PerDegree for Evaluation<'_, SINGLE> {
     #[inline(always)]
     fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
-        if self.writing == Writing::Outwards {
+        if self.axis.is_mirrored() {
             self.outwards::<S, N>(simd, n);
         } else {
             self.whole::<S, N>(simd, n);
@@ -255,17 +242,16 @@ impl<const SINGLE: bool> Evaluation<'_, SINGLE> {
         }
     }
 
-    /// Writes columns from the first η to the last one, so that memory is written in order.
+    /// Writes columns from the first η to the last one.
     #[inline(always)]
     fn whole<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
-        let past = self.writing == Writing::PastCaches;
         let Self { polynomials: spans, axis, out, .. } = self;
         let (count, all) = (axis.eta.len(), &axis.u[..]);
         let mut ends = [count; MOST_SPANS];
         for (k, out) in out.chunks_exact_mut(count).enumerate() {
             if SINGLE {
                 let (begin, c) = spans[0].column::<N>(k);
-                horner::<S, N, true>(simd, (begin, &c[..n]), all, out, past);
+                horner::<S, N, true>(simd, (begin, &c[..n]), all, out);
                 continue;
             }
             for (index, span) in spans.iter().enumerate().skip(1).rev() {
@@ -286,7 +272,7 @@ impl<const SINGLE: bool> Evaluation<'_, SINGLE> {
                 let whole = begin + (end - begin).next_multiple_of(S::F64_LANES);
                 let run = begin..if whole <= count { whole } else { end };
                 let (beginning, c) = spans[index].column::<N>(k);
-                horner::<S, N, false>(simd, (beginning, &c[..n]), &all[run.clone()], &mut out[run], past);
+                horner::<S, N, false>(simd, (beginning, &c[..n]), &all[run.clone()], &mut out[run]);
                 begin = end;
             }
         }

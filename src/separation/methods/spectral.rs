@@ -8,13 +8,12 @@ use crate::separation::axis::{EtaAxis, mirror};
 use crate::separation::columns::fit::Fitter;
 use crate::separation::columns::neighbours::MOST_SPANS;
 use crate::separation::columns::skewed;
-use crate::separation::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns, Writing};
+use crate::separation::columns::strip::{ColumnPolynomials, Evaluation, Strip, StripColumns};
 use crate::separation::columns::strips::strips;
 use crate::separation::demand::{Demand, FULL_PRECISION};
 use crate::separation::kernel::Kernel;
 use crate::separation::relief::Relief;
 use crate::separation::span::Span;
-use crate::separation::values::{LINE, Residence, lead};
 
 /// Spectral columns that keep a demanded accuracy.
 #[derive(Debug)]
@@ -24,16 +23,15 @@ pub struct Spectral<'a> {
     strips: &'a [Strip],
     /// Polynomials of neighbouring columns.
     polynomials: Vec<ColumnPolynomials>,
-    residence: Residence,
     /// Largest measured truncation error so far \[mm\].
     truncation: f64,
 }
 
 impl<'a> Spectral<'a> {
-    /// Makes the method from a fitter, the strips of some of the columns, and the kind of memory in which the array is.
-    pub fn new(fitter: Fitter<'a>, axis: &'a EtaAxis, strips: &'a [Strip], residence: Residence) -> Self {
+    /// Makes the method from a fitter and the strips of some of the columns.
+    pub fn new(fitter: Fitter<'a>, axis: &'a EtaAxis, strips: &'a [Strip]) -> Self {
         let polynomials = Vec::with_capacity(MOST_SPANS);
-        Self { fitter, axis, strips, polynomials, residence, truncation: 0.0 }
+        Self { fitter, axis, strips, polynomials, truncation: 0.0 }
     }
 }
 
@@ -109,14 +107,14 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { spectral, xi, out } = self;
-        let (axis, length, writing) = (spectral.axis, spectral.axis.eta.len(), spectral.writing(out));
+        let (axis, length) = (spectral.axis, spectral.axis.eta.len());
         let Spectral { fitter, polynomials, truncation, .. } = &mut *spectral;
         let mut taken = [false; MANY];
         if let Some((fitted, n, error)) = fitter.columns(axis.reach * axis.reach, xi) {
             (taken, *truncation) = (fitted, truncation.max(error));
             polynomials.resize(1, ColumnPolynomials::ZERO);
             polynomials[0].set(&fitter.rows, &fitter.neighbours.spans[0].base);
-            simd.vectorize(Evaluation::<true> { polynomials, n, axis, writing, out });
+            simd.vectorize(Evaluation::<true> { polynomials, n, axis, out });
         }
         for ((&xi, out), taken) in xi.iter().zip(out.chunks_exact_mut(length)).zip(taken) {
             if !taken {
@@ -127,23 +125,12 @@ impl pulp::WithSimd for EachColumn<'_, '_> {
 }
 
 impl Spectral<'_> {
-    /// Returns how these columns are written. To mirror needs columns of whole cache lines, because stores across two lines take
-    /// longer than the mirroring saves. It also needs an array inside the second cache: beyond it, storing backwards takes longer.
-    fn writing(&self, columns: &[f64]) -> Writing {
-        let lines = self.axis.eta.len().is_multiple_of(LINE) && lead(columns) == 0;
-        match self.residence {
-            Residence::SecondCache if self.axis.symmetric && lines => Writing::Outwards,
-            Residence::Memory => Writing::PastCaches,
-            _ => Writing::Whole,
-        }
-    }
-
     /// Writes at most [`MANY`] neighbouring columns, all of one strip or all of none.
     fn neighbours(&mut self, strip: Option<&Strip>, xi: &[f64], out: &mut [f64]) {
-        let (arch, axis, writing) = (self.fitter.arch, self.axis, self.writing(out));
+        let (arch, axis) = (self.fitter.arch, self.axis);
         let (relief, scratch) = (&self.fitter.relief, &mut self.polynomials);
         match strip {
-            Some(strip) => arch.dispatch(StripColumns { relief, strip, xi, axis, writing, scratch, out }),
+            Some(strip) => arch.dispatch(StripColumns { relief, strip, xi, axis, scratch, out }),
             None if xi.len() > 1 && !relief.is_skewed() => {
                 arch.dispatch(EachColumn { spectral: self, xi, out })
             }
@@ -183,14 +170,13 @@ impl Spectral<'_> {
     }
 }
 
-/// Fills columns of s \[mm\] by the code for one kind of machine, and stores them as in an array in one kind of memory. A test
-/// compares their bits. `out` has the values of one column after another, at ξ \[mm\] in ascending order. Returns the largest number of spans
+/// Fills columns of s \[mm\] by the code for one kind of machine. A test compares their bits. `out` has the values of one column after another, at ξ \[mm\] in ascending order. Returns the largest number of spans
 /// that a column of a strip has.
 ///
 /// Accuracy: [`FULL_PRECISION`].
 pub fn columns_by(
     placement: &Placement,
-    (arch, residence): (pulp::Arch, Residence),
+    arch: pulp::Arch,
     xi: &[f64],
     axis: &EtaAxis,
     out: &mut [f64],
@@ -198,6 +184,6 @@ pub fn columns_by(
     let demand = Demand::for_tolerance(FULL_PRECISION);
     let fitter = || Fitter { arch, ..Fitter::new(Relief::new(placement), demand, 4) };
     let strips = strips(&mut fitter(), xi, axis.reach * axis.reach);
-    Spectral::new(fitter(), axis, &strips, residence).columns(xi, out);
+    Spectral::new(fitter(), axis, &strips).columns(xi, out);
     strips.iter().map(|strip| strip.spans).max().unwrap_or(0)
 }

@@ -6,7 +6,7 @@ use wheelrail::Interval;
 use wheelrail::conformal::{NormalGap, fill_normal_gap};
 use wheelrail::error::Result;
 use wheelrail::mesh::equal_steps;
-use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, Values, plan};
+use wheelrail::separation::{EtaAxis, FULL_PRECISION, Method, plan};
 
 /// The times of one grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +44,7 @@ pub fn gap_cost(reference: &GapReference, side: usize, seconds: f64) -> Result<G
     let xi = over.map(|at| gap.rail().point(at).map_or(0.0, |at| at.xi));
     let xi = equal_steps(xi.low, xi.high, side);
     let choice = plan(&placement, &xi, &axis, FULL_PRECISION, Some(Method::Spectral)).choice;
-    let mut values = Values::new(side * side);
+    let mut values = vec![0.0; side * side];
     values.fill(0.0);
     let mut timings = [Timing::NONE; 2];
     race(&mut timings, seconds, LEAST_RUNS, |contestant| {
