@@ -153,12 +153,15 @@ impl Planned<'_> {
         self.spectral(&probe, format!("cheapest within {tolerance:e} mm; {why}"))
     }
 
-    /// Plans a method whose error is estimated by comparison with single points.
+    /// Plans a method whose error is estimated by comparison with single points, from which those of [`Method::Pointwise`] do not differ.
     fn sampled(&self, method: Method, probe: &Probe, reason: String) -> Plan {
-        let samples = Samples::new(self.placement, self.xi, self.axis);
         let choice = Choice { method, demand: Demand::for_tolerance(self.tolerance), coefficients: 1 };
+        let difference = match method {
+            Method::Pointwise => 0.0,
+            _ => Samples::new(self.placement, self.xi, self.axis, method).difference(&choice),
+        };
         let rounding = probe.rounding;
-        let error = BETWEEN_SAMPLES * samples.difference(&choice) + rounding;
+        let error = BETWEEN_SAMPLES * difference + rounding;
         Plan { choice, error, rounding, tolerance: self.tolerance, reason, strips: Vec::new() }
     }
 

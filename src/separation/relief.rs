@@ -90,7 +90,9 @@ impl<'a> Relief<'a> {
     pub fn height_and_size(&mut self, xi: f64, eta: f64) -> [f64; 2] {
         let Some(point) = self.point(xi, eta) else { return [f64::NAN; 2] };
         let base = self.base(xi, point.shift, &point.span);
-        let gap = self.midplane(xi);
+        // A span that begins in the midplane at ξ itself begins with the gap.
+        let in_midplane = point.shift == 0.0 && point.span.e.low == 0.0;
+        let gap = if in_midplane { base } else { self.midplane(xi) };
         let along = if gap.is_nan() { base.abs() } else { gap.abs() + (base - gap).abs() };
         [base + point.point.rise, along + point.point.rise.abs()]
     }

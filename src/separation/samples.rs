@@ -1,22 +1,27 @@
-//! Measures the error of a method that has no estimate of its own: it is compared with single points in some columns of a
-//! grid.
+//! Measures the error of a method that has no estimate of its own: it is compared with single points at a number of places that does
+//! not grow with the grid.
 
 use super::axis::EtaAxis;
 use super::evaluator::Evaluator;
-use super::grid::Choice;
+use super::grid::{Choice, Method};
 use crate::numerics::nan_max;
 use crate::placement::Placement;
 
-/// Number of columns, evenly spread, in which a method is compared with single points. The error is smooth between joints;
-/// the columns next to joints and half way between them are compared as well.
-const SAMPLED_COLUMNS: usize = 65;
+/// Where a method is compared with single points: numbers of columns evenly spread, of columns beside joints and half way between
+/// two, and of η.
+struct SampledPlaces {
+    columns: usize,
+    beside: usize,
+    eta: usize,
+}
 
-/// Least number of η that are compared in these columns.
-const SAMPLED_ETA: usize = 9;
+/// The places for a quadratic form. It has no joints, so that its error is that of two smooth surfaces between the joints of
+/// the bodies: over 15,000 random grids the largest error was at most 1.13 times the largest one at these places; without the
+/// columns beside joints 1.84 times.
+const OF_A_FORM: SampledPlaces = SampledPlaces { columns: 9, beside: 8, eta: 3 };
 
-/// Number of points up to which all points of a grid are compared, because a step or kink may affect a single point. A larger
-/// grid is compared at about so many points or more.
-const SAMPLED_POINTS: usize = 4096;
+/// The places for methods by columns or points, whose error may be large in one column alone.
+const OF_COLUMNS: SampledPlaces = SampledPlaces { columns: 65, beside: usize::MAX, eta: 63 };
 
 /// Values at single points of a few columns.
 pub(super) struct Samples<'a> {
@@ -27,11 +32,11 @@ pub(super) struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
-    /// Takes the samples of a grid.
-    pub fn new(placement: &'a Placement, xi: &[f64], whole: &EtaAxis) -> Self {
-        let all = xi.len() * whole.eta.len() <= SAMPLED_POINTS;
-        let columns = if all { xi.to_vec() } else { sampled_columns(placement, xi) };
-        let axis = EtaAxis::new(&thinned(&whole.eta, SAMPLED_ETA.max(SAMPLED_POINTS / columns.len().max(1))));
+    /// Takes the samples of a grid for a method.
+    pub fn new(placement: &'a Placement, xi: &[f64], whole: &EtaAxis, method: Method) -> Self {
+        let places = if method == Method::Quadratic { OF_A_FORM } else { OF_COLUMNS };
+        let columns = sampled_columns(placement, xi, &places);
+        let axis = EtaAxis::new(&thinned(&whole.eta, places.eta));
         let mut evaluator = Evaluator::new(placement);
         let mut exact = vec![f64::NAN; columns.len() * axis.eta.len()];
         for (&xi, out) in columns.iter().zip(exact.chunks_mut(axis.eta.len().max(1))) {
@@ -56,19 +61,23 @@ pub(super) fn difference(values: &[f64], exact: &[f64]) -> f64 {
     differences.map(|(s, exact)| (s - exact).abs()).fold(0.0, nan_max)
 }
 
-/// Chooses columns of the grid: some evenly spread, and those next to the joints of both bodies and to the middle between
+/// Chooses columns of the grid: some evenly spread, and some of those next to the joints of both bodies and to the middle between
 /// two joints.
-fn sampled_columns(placement: &Placement, xi: &[f64]) -> Vec<f64> {
-    let mut columns = thinned(xi, SAMPLED_COLUMNS);
+fn sampled_columns(placement: &Placement, xi: &[f64], places: &SampledPlaces) -> Vec<f64> {
+    let mut columns = thinned(xi, places.columns);
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return columns };
     if columns.len() < xi.len() {
         let joints = placement.joints(first, last);
         let middles = joints.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
+        let mut beside = Vec::new();
         for place in joints.iter().copied().chain(middles) {
             let beyond = xi.partition_point(|&xi| xi < place);
             // If a column is on the joint, both its neighbours are chosen, too.
-            columns.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
+            beside.extend(&xi[beyond.saturating_sub(1)..xi.len().min(beyond + 2)]);
         }
+        beside.sort_by(f64::total_cmp);
+        beside.dedup();
+        columns.extend(thinned(&beside, places.beside));
         columns.sort_by(f64::total_cmp);
         columns.dedup();
     }

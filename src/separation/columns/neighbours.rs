@@ -2,7 +2,7 @@
 
 use crate::numerics::lanes::{Lanes, MANY, every, lanes};
 use crate::profile::{Branches, Piece, Section};
-use crate::separation::gap::{contact_gap, contact_gaps};
+use crate::separation::gap::contact_gaps;
 use crate::separation::relief::Relief;
 use crate::separation::span::SpanLanes;
 use crate::separation::wheel_surface::WheelSurface;
@@ -127,15 +127,19 @@ impl<'a> Neighbours<'a> {
         let used = self.rail_branches.take();
         let rail_branches = Branches::of(rails.map(|piece| &rail.branches[piece.branch]), used)?;
         let (_, rail_height) = self.rail_branches.insert(rail_branches).points(&self.xi)?;
-        let contact = [rail.contact, wheel.section.contact];
-        let base = lanes(|k| {
-            let [r, w] = [rails[k].branch, wheels[k].branch];
-            if contact == [Some(r), Some(w)] {
-                contact_gap(&rail.branches[r], &wheel.section.branches[w], self.xi[k], height[k])
-            } else {
-                height[k] - rail_height[k]
-            }
-        });
+        let mut base: Lanes = lanes(|k| height[k] - rail_height[k]);
+        let mut over_contact = [false; MANY];
+        for (k, over) in over_contact.iter_mut().enumerate() {
+            *over = [rail.contact, wheel.section.contact] == [rails[k].branch, wheels[k].branch].map(Some);
+        }
+        if let Some(k) = over_contact.iter().position(|&over| over) {
+            let [r, w] = [&rail.branches[rails[k].branch], &wheel.section.branches[wheels[k].branch]];
+            // Lanes over other branches are computed as copies of this one.
+            let lane = |j: usize| if over_contact[j] { j } else { k };
+            let (xi, zeta_w): (Lanes, Lanes) = (lanes(|j| self.xi[lane(j)]), lanes(|j| height[lane(j)]));
+            let gaps = contact_gaps(r, w, &xi, &zeta_w)?;
+            base = lanes(|k| if over_contact[k] { gaps[k] } else { base[k] });
+        }
         let zero = [0.0; MANY];
         self.contact = false;
         self.spans.clear();
