@@ -10,20 +10,14 @@ use super::gap::NormalGap;
 use super::ray::{Ray, RayBodies};
 use super::sight::{point, searched};
 use super::span::{RayPoints, RaySpan, SpanReach, points};
-use crate::numerics::chebyshev::{self, extrema, powers, unit_nodes};
+use crate::numerics::chebyshev::{extrema, powers, unit_nodes};
 use crate::numerics::interval::Interval;
-use crate::numerics::lanes::{Lanes, MANY, every, lanes, largest, smallest};
+use crate::numerics::lanes::{Lanes, MANY, lanes, largest};
 use crate::numerics::nan_max;
 use crate::separation::{
-    ColumnPolynomial, Demand, EtaAxis, MOST_COEFFICIENTS, ROUNDING_LEVEL, SMALL_SHARE, interpolate, mirror,
+    AlongEta, BLOCK, ColumnPolynomial, Demand, EtaAxis, Kernel, MOST_COEFFICIENTS, ROUNDING_LEVEL, ReliefSum,
+    chebyshev_points, fill_all, inside_piece, interpolate, mirror,
 };
-
-/// Number of columns of one block, which is the unit of work of a thread. Each block begins anew, so that any number of
-/// threads gives the same bits.
-const BLOCK: usize = MANY;
-
-/// Most points of a grid that is filled by one thread, because waking another takes some 50 µs.
-const FEW_POINTS: usize = 65536;
 
 /// The end of columns of a skewed wheel: no point is missing, because each was searched for.
 const SEARCHED: f64 = f64::NEG_INFINITY;
@@ -58,40 +52,21 @@ pub fn fill_normal_gap(
         });
         return 0.0;
     }
-    if let Some(under) = &gap.under {
-        let mut falls = vec![f64::NAN; out.len()];
-        let error = fill_normal_gap(under, sigma, axis, tolerance, &mut falls);
-        let above = fill_over_profile(gap, sigma, axis, tolerance, out);
-        out.iter_mut().zip(falls).for_each(|(t, fall)| *t += fall);
-        return above + error;
-    }
-    fill_over_profile(gap, sigma, axis, tolerance, out)
-}
-
-/// Writes the gap \[mm\] of the wheel over the lower body's profile; returns the largest truncation error \[mm\].
-fn fill_over_profile(
-    gap: &NormalGap<'_>,
-    sigma: &[f64],
-    axis: &EtaAxis,
-    tolerance: f64,
-    out: &mut [f64],
-) -> f64 {
-    let length = axis.eta().len();
     let demand = Demand::for_tolerance(tolerance).on_truncation();
-    let block = |(out, sigma): (&mut [f64], &[f64])| {
-        let mut columns = BlockColumns::new(gap, axis, demand);
-        columns.fill(sigma, out);
-        columns.error
+    let kernel = || -> Box<dyn Kernel + '_> {
+        let above = Columns::new(gap, axis, demand);
+        match &gap.under {
+            Some(under) => {
+                Box::new(ReliefSum::new(Box::new(above), Box::new(Columns::new(under, axis, demand))))
+            }
+            None => Box::new(above),
+        }
     };
-    if out.len() <= FEW_POINTS {
-        return out.chunks_mut(BLOCK * length).zip(sigma.chunks(BLOCK)).map(block).fold(0.0, f64::max);
-    }
-    let blocks = out.par_chunks_mut(BLOCK * length).zip(sigma.par_chunks(BLOCK));
-    blocks.map(block).reduce(|| 0.0, f64::max)
+    fill_all(kernel, true, sigma, out)
 }
 
-/// The columns of one block.
-struct BlockColumns<'g, 'a> {
+/// The columns of t over the profile of the lower body.
+struct Columns<'g, 'a> {
     gap: &'g NormalGap<'a>,
     axis: &'g EtaAxis,
     demand: Demand,
@@ -102,13 +77,34 @@ struct BlockColumns<'g, 'a> {
     error: f64,
 }
 
-impl<'g, 'a> BlockColumns<'g, 'a> {
+impl<'g, 'a> Columns<'g, 'a> {
     fn new(gap: &'g NormalGap<'a>, axis: &'g EtaAxis, demand: Demand) -> Self {
         Self { gap, axis, demand, arch: pulp::Arch::new(), count: FIRST_COUNT, error: 0.0 }
     }
+}
 
-    /// Fills the columns of all σ of the block.
-    fn fill(&mut self, sigma: &[f64], out: &mut [f64]) {
+impl Kernel for Columns<'_, '_> {
+    fn column(&mut self, sigma: f64, out: &mut [f64]) {
+        self.columns(&[sigma], out);
+    }
+
+    fn columns(&mut self, sigma: &[f64], out: &mut [f64]) {
+        let length = self.axis.eta().len();
+        for (sigma, out) in sigma.chunks(BLOCK).zip(out.chunks_mut(BLOCK * length)) {
+            // Each block begins anew, so that any number of threads gives the same bits.
+            self.count = FIRST_COUNT;
+            self.block(sigma, out);
+        }
+    }
+
+    fn truncation(&self) -> f64 {
+        self.error
+    }
+}
+
+impl Columns<'_, '_> {
+    /// Fills the columns of at most [`BLOCK`] σ.
+    fn block(&mut self, sigma: &[f64], out: &mut [f64]) {
         out.fill(f64::NAN);
         let rail: Vec<Option<RailPoint>> = sigma.iter().map(|&sigma| self.gap.rail.point(sigma)).collect();
         let length = self.axis.eta().len();
@@ -117,7 +113,10 @@ impl<'g, 'a> BlockColumns<'g, 'a> {
         for ((at, end), out) in rail.iter().zip(ends).zip(out.chunks_mut(length)) {
             let Some(at) = at else { continue };
             if skewed {
-                self.skewed(at, self.axis.eta(), out);
+                let (bodies, demand, arch) = (&self.gap.bodies, self.demand, self.arch);
+                let mut column = SkewedColumn { bodies, at, demand, arch, error: self.error };
+                column.fill(self.axis.eta(), out);
+                self.error = column.error;
             }
             self.complete(at, end, out);
         }
@@ -209,49 +208,6 @@ impl<'g, 'a> BlockColumns<'g, 'a> {
             }
         }
     }
-
-    /// Fills a part of a column of a skewed wheel.
-    fn skewed(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) {
-        if eta.len() <= MANY {
-            return self.singly(at, eta, out);
-        }
-        let Some(Interval { low: least, high: most }) = self.interpolated(at, eta, out) else {
-            let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
-            self.skewed(at, eta.0, out.0);
-            return self.skewed(at, eta.1, out.1);
-        };
-        // A parabola falls by less than that share between two Chebyshev points.
-        if least > 2.0 * SMALL_SHARE * most {
-            return;
-        }
-        let is_small = |t: &f64| t.abs() < SMALL_SHARE * most;
-        let (Some(begin), Some(end)) = (out.iter().position(is_small), out.iter().rposition(is_small)) else {
-            return;
-        };
-        let small = begin..end + 1;
-        if small.len() <= eta.len() / 2 {
-            self.skewed(at, &eta[small.clone()], &mut out[small]);
-        } else {
-            self.singly(at, &eta[small.clone()], &mut out[small]);
-        }
-    }
-
-    fn singly(&self, at: &RailPoint, eta: &[f64], out: &mut [f64]) {
-        for (t, &eta) in out.iter_mut().zip(eta) {
-            *t = point(&self.gap.bodies.ray(at, eta)).map_or(f64::NAN, |point| point.t);
-        }
-    }
-
-    /// Interpolates t over an interval of η. Returns the least and the largest |t| at the Chebyshev points, or `None` where
-    /// t does not lie over one branch of the wheel or one polynomial does not reach the demand.
-    fn interpolated(&mut self, at: &RailPoint, eta: &[f64], out: &mut [f64]) -> Option<Interval> {
-        let interval = Interval::new(*eta.first()?, *eta.last()?);
-        let bodies = &self.gap.bodies;
-        let (dropped, least, most) =
-            self.arch.dispatch(Interpolation { bodies, at, interval, demand: self.demand, eta, out })?;
-        self.error = self.error.max(dropped);
-        Some(Interval::new(least, most))
-    }
 }
 
 /// The first spans of the columns of a block. The work is compiled for each kind of machine.
@@ -330,38 +286,53 @@ impl SpanFit<'_, '_> {
     }
 }
 
-/// Interpolation of a part of a skewed column. The work is compiled for each kind of machine.
-struct Interpolation<'w, 'a> {
+/// A column of t over a skewed wheel.
+struct SkewedColumn<'w, 'a> {
     bodies: &'w RayBodies<'a>,
     at: &'w RailPoint,
-    /// The interval of η \[mm\].
-    interval: Interval,
     demand: Demand,
-    eta: &'w [f64],
-    out: &'w mut [f64],
+    arch: pulp::Arch,
+    /// Largest truncation error so far \[mm\].
+    error: f64,
 }
 
-impl pulp::WithSimd for Interpolation<'_, '_> {
-    type Output = Option<(f64, f64, f64)>;
-
-    /// Returns the sum of the dropped coefficients, and the least and the largest |t| at the Chebyshev points.
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<(f64, f64, f64)> {
-        let Self { bodies, at, interval, demand, eta, out } = self;
-        let (centre, half) = (interval.middle(), interval.width() / 2.0);
-        let nodes = &*chebyshev::NODES;
-        let RayPoints { t, abscissae, piece, over_contact } =
-            points(bodies, at, &lanes(|k| centre + half * nodes[k]))?;
-        // The abscissa is nearly a parabola in η: a turn between two points moves it by less than the step between others.
-        let margin = abscissae.windows(2).fold(0.0, |most: f64, pair| most.max((pair[1] - pair[0]).abs()));
-        let inner = piece.grown(-margin);
-        if !every::<MANY>(|k| inner.contains(abscissae[k])) {
+impl AlongEta for SkewedColumn<'_, '_> {
+    fn at_once(&mut self, eta: &[f64], out: &mut [f64]) -> Option<Interval> {
+        if eta.len() <= MANY {
             return None;
         }
-        let size = largest(&t);
-        let rounding = if over_contact { ROUNDING_LEVEL * size } else { bodies.rounding() };
-        let allowed = demand.absolute.min(demand.relative * size);
-        let dropped = interpolate(simd, &t, interval, [allowed, rounding], eta, out)?;
-        Some((dropped, smallest(&t), size))
+        let (size, dropped) = self.arch.dispatch(Interpolation { column: self, eta, out })?;
+        self.error = self.error.max(dropped);
+        Some(size)
+    }
+
+    fn singly(&mut self, eta: &[f64], out: &mut [f64]) {
+        for (t, &eta) in out.iter_mut().zip(eta) {
+            *t = point(&self.bodies.ray(self.at, eta)).map_or(f64::NAN, |point| point.t);
+        }
+    }
+}
+
+/// Interpolation of a part of a skewed column. The work is compiled for each kind of machine.
+struct Interpolation<'i, 'w, 'a> {
+    column: &'i SkewedColumn<'w, 'a>,
+    eta: &'i [f64],
+    out: &'i mut [f64],
+}
+
+impl pulp::WithSimd for Interpolation<'_, '_, '_> {
+    type Output = Option<(Interval, f64)>;
+
+    /// Returns the magnitudes of t at the Chebyshev points, and the sum of the dropped coefficients.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
+        let Self { column: &SkewedColumn { bodies, at, demand, .. }, eta, out } = self;
+        let over = Interval::new(*eta.first()?, *eta.last()?);
+        let RayPoints { t, abscissae, piece, over_contact } = points(bodies, at, &chebyshev_points(over))?;
+        if !inside_piece(piece, &abscissae, true) {
+            return None;
+        }
+        let rounding = if over_contact { ROUNDING_LEVEL * largest(&t) } else { bodies.rounding() };
+        interpolate(simd, &t, over, (demand, rounding), eta, out)
     }
 }

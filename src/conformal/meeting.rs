@@ -24,9 +24,9 @@ pub struct Meetings<const N: usize> {
     pub parameters: Option<Lanes<N>>,
 }
 
-/// Finds r and runs ε at which −ε d + r n lies on a branch, for N lines from one known point of it. ε is about `runs`, and
-/// exactly that on arcs and lines: on a polynomial no root is sought. `drift` is d_ξ n_ζ − d_ζ n_ξ. NaN as for [`along`], and
-/// where the chord may end beyond a place at which the polynomial is parallel to n.
+/// Computes runs ε and r such that −ε d + r n lies on a branch, for N lines from one known point of it. ε is exactly `runs` on arcs
+/// and lines, and about `runs` on a polynomial, where no root is sought. `drift` is d_ξ n_ζ − d_ζ n_ξ. The result is NaN as for
+/// [`along`], and if the chord may end beyond a place at which the polynomial is parallel to n.
 #[inline(always)]
 pub fn along_by<const N: usize>(
     branch: &Branch,
@@ -60,13 +60,13 @@ pub fn along_by<const N: usize>(
     }
 }
 
-/// Finds the r at which v₀ + r n lies on a branch, for N lines; v₀ is seen from known points of the branch. Of two such r it
-/// is the one at which the line enters the material of a wheel. NaN where the line misses the curve of the branch, and for
-/// points of another branch. The ends of the branch do not count on arcs and lines.
+/// Computes r such that v₀ + r n lies on a branch, for N lines. v₀ is relative to known points of the branch. Of two solutions the
+/// result is the one at which the line enters the wheel's material. It is NaN if the line misses the curve of the branch, and for
+/// points of another branch. Arcs and lines are continued beyond the ends of the branch.
 ///
-/// Method: the quadratic equation of an arc or line; Newton's method on a polynomial. Accuracy: a few roundings of r where
-/// v₀ is exact. Cost: a root and a division on arcs. Returns `None` if Newton's steps do not settle; then N lines are to be
-/// taken one by one, and a single line has no point.
+/// Method: the quadratic equation of an arc or line; Newton's method on a polynomial. Accuracy: a few roundings of r if v₀ is exact.
+/// Cost: a root and a division on arcs. Returns `None` if Newton's steps do not settle: a caller of N lines then takes them one by
+/// one, and a single line has no point.
 #[inline(always)]
 pub fn along<const N: usize>(
     branch: &Branch,

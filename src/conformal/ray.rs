@@ -7,7 +7,7 @@ use super::arc_length::RailPoint;
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::{Branch, ONE_JOINT, Piece, Section};
-use crate::separation::{WheelSurface, sagitta};
+use crate::separation::{Skew, WheelSurface, sagitta};
 
 /// The bodies over which rays are cast, with what all rays share.
 #[derive(Debug, Clone)]
@@ -15,12 +15,8 @@ pub struct RayBodies<'a> {
     placement: &'a Placement,
     /// The wheel.
     pub wheel: WheelSurface<'a>,
-    /// sin χ.
-    skew_sin: f64,
-    /// cos χ.
-    skew_cos: f64,
-    /// 1 − cos χ, to all digits.
-    versine: f64,
+    /// The rotation from the wheel's own directions of the tangent plane to ξ and η.
+    skew: Skew,
     /// Intervals of ξ \[mm\] at which the wheel's outer surface has a step or a hole.
     steps: Vec<Interval>,
     /// Size of the coordinates \[mm\] whose roundings part the two sides of a joint.
@@ -51,13 +47,11 @@ pub struct Ray<'a> {
 impl<'a> RayBodies<'a> {
     /// Prepares a placed pair.
     pub fn new(placement: &'a Placement) -> Self {
-        let skew = placement.skew_rotation();
-        let versine = 2.0 * (placement.skew() / 2.0).sin().powi(2);
         let wheel = WheelSurface::new(placement);
         let frame = &wheel.section.frame;
         let size = placement.wheel().profile().extent() + frame.x.abs() + frame.z.abs();
         let steps = wheel.section.steps();
-        Self { placement, wheel, skew_sin: skew.im, skew_cos: skew.re, versine, steps, size }
+        Self { placement, wheel, skew: Skew::new(placement), steps, size }
     }
 
     /// Returns the rail's section in the contact frame.
@@ -67,7 +61,7 @@ impl<'a> RayBodies<'a> {
 
     /// Tells whether the wheel is skewed.
     pub fn is_skewed(&self) -> bool {
-        self.skew_sin != 0.0
+        self.skew.is_some()
     }
 
     /// Returns the rounding \[mm\] of a height of the wheel beyond its contact segment.
@@ -85,8 +79,8 @@ impl<'a> RayBodies<'a> {
         !self.steps.is_empty()
     }
 
-    /// Tells whether the wheel's outer surface has a step over one of the points of a column, between the midplane and the sagitta
-    /// of the point, and whether it ends there.
+    /// Tells whether the wheel's outer surface has a step over a column, between the midplane and the sagittae of its points, and whether
+    /// it ends there.
     pub fn edges_over(&self, from: &RailPoint, eta: &[f64]) -> [bool; 2] {
         let ends = [eta.first(), eta.last()].map(|eta| self.ray(from, eta.copied().unwrap_or(0.0)));
         let reach = ends.iter().map(|ray| ray.own_sagitta() * self.wheel.sin.abs()).fold(0.0, f64::max);
@@ -97,16 +91,15 @@ impl<'a> RayBodies<'a> {
 
     /// Casts the ray from a point of the rail at lateral position η \[mm\]. Without skew, η changes only the starting point.
     pub fn ray(&'a self, from: &RailPoint, eta: f64) -> Ray<'a> {
-        let (sin, cos) = (self.skew_sin, self.skew_cos);
-        let skewed = sin != 0.0;
-        let shift = if skewed { eta * sin - from.xi * self.versine } else { 0.0 };
-        let n = [if skewed { -from.sin * cos } else { -from.sin }, from.cos];
+        let rotation = self.skew.rotation;
+        let [shift, eta] = self.skew.own(from.xi, eta);
+        let n = [-from.sin * rotation.re, from.cos];
         Ray {
             bodies: self,
             p: [from.xi + shift, from.zeta],
             n,
-            eta: if skewed { eta * cos - from.xi * sin } else { eta },
-            tilt: from.sin * sin,
+            eta,
+            tilt: from.sin * rotation.im,
             down: n[0] * self.wheel.sin + n[1] * self.wheel.cos,
             drift: self.wheel.sin * n[1] - self.wheel.cos * n[0],
             contact: from.on_contact.then_some([from.xi, shift]),
@@ -144,8 +137,8 @@ impl<'a> Ray<'a> {
         sagitta(self.axle_distance(0.0), self.eta * self.eta)
     }
 
-    /// Tells whether the ray's beginning, t = 0, is on the side of the wheel's profile from which the ray meets it at t \[mm\]: in
-    /// the material if t is negative, and not there if t is positive.
+    /// Tells whether the ray's beginning, t = 0, is on the side of the wheel's profile from which the ray meets it at t \[mm\]: inside
+    /// the material if t is negative, outside if t is positive.
     pub fn begins_on_side(&self, t: f64) -> bool {
         let (wheel, e) = (&self.bodies.wheel, self.own_sagitta());
         let height = wheel.section.height(self.p[0] - e * wheel.sin);
@@ -179,15 +172,15 @@ impl<'a> Ray<'a> {
         [0, 1].map(|end| self.beside([piece.xi[end], piece.heights[end]]))
     }
 
-    /// Tells whether a piece leads from one side of the ray to the other everywhere, so that the ray crosses it once at most.
+    /// Tells whether the ray crosses a piece at most once, because the piece nowhere turns back across the ray.
     pub fn passes_once(&self, index: usize) -> bool {
         let slopes = self.bodies.wheel.section.slopes(index);
         // A vertical surface has an infinite slope, and rays along ζ cross it once, too.
         self.n[0] == 0.0 || slopes.ends().iter().all(|slope| slope * self.n[0] < self.n[1])
     }
 
-    /// Tells whether a piece leads from one side of the ray to the other everywhere between the abscissa of P′, if it is above P′, and
-    /// the end to which the profile is followed from there.
+    /// Tells whether the ray crosses a piece at most once on the part that is followed: from the abscissa of P′, if the piece is above
+    /// P′, to the end towards which the profile is followed.
     fn leads(&self, index: usize) -> bool {
         if self.passes_once(index) {
             return true;
@@ -211,8 +204,8 @@ impl<'a> Ray<'a> {
         (end - begin).abs() <= self.bodies.joint()
     }
 
-    /// Finds the piece of the wheel's profile that the ray meets in the wheel's own midplane, e = 0. Returns `None` where it
-    /// misses the profile, and where a part of the profile that leads there has a step or turns back across the ray.
+    /// Finds the piece of the wheel's profile that the ray meets in the wheel's own midplane, e = 0. Returns `None` if the ray misses
+    /// the profile, and if the part of the profile that leads there has a step or turns back across the ray.
     ///
     /// Method: the pieces are followed from the one above P′ towards the ray.
     pub fn first_piece(&self) -> Option<usize> {

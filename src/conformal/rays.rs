@@ -8,12 +8,12 @@ use crate::profile::{Branch, BranchPoints};
 use crate::separation::{contact_gap, contact_gaps, sagitta};
 
 /// Most steps to the sagitta of a point. Each gains some three digits.
-const STEPS: usize = 40;
+pub const STEPS: usize = 40;
 
 /// Roundings of the sagitta below which its steps have settled.
-const SETTLED: f64 = 2.0;
+pub const SETTLED: f64 = 2.0;
 
-/// Where rays begin to follow a piece.
+/// The points at which rays begin to follow a piece.
 #[derive(Debug, Clone, Copy)]
 pub struct RayStart<const N: usize> {
     /// t \[mm\].
@@ -46,8 +46,8 @@ pub struct Met<const N: usize> {
     pub w: Lanes<N>,
 }
 
-/// Finds where rays meet a piece in the wheel's own midplane, e = 0. Under skew all come from one point of the rail. Returns
-/// `None` where one misses it, and if N > 1 and only some have the accuracy of the contact segments.
+/// Finds the points at which rays meet a piece in the wheel's own midplane, e = 0. Under skew all rays must come from one point of the
+/// rail. Returns `None` if a ray misses the piece, and if N > 1 and only some have the accuracy of the contact segments.
 #[inline(always)]
 pub fn in_midplane<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<RayStart<N>> {
     let (bodies, n) = (rays[0].bodies, directions(rays));
@@ -96,7 +96,7 @@ fn directions<const N: usize>(rays: &[Ray<'_>; N]) -> [Lanes<N>; 2] {
     [lanes(|k| rays[k].n[0]), lanes(|k| rays[k].n[1])]
 }
 
-/// Finds where the columns of rays enter a piece at its near end. Returns `None` unless all of them do.
+/// Finds the points at which the columns of rays enter a piece by its near end. Returns `None` if one of them does not.
 #[inline(always)]
 pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<RayStart<N>> {
     let [near, _] = rays[0].sides();
@@ -110,10 +110,10 @@ pub fn at_joint<const N: usize>(rays: &[Ray<'_>; N], index: usize) -> Option<Ray
     Some(RayStart { t, e, points: begin.repeated(), over_contact: false })
 }
 
-/// Finds the points of the wheel at the rays' own η′ over a branch. Returns `None` where a ray misses the branch or its steps
-/// do not settle.
+/// Finds the points of the wheel at the rays' own η′ over a branch. Returns `None` if a ray misses the branch, or if its steps do not
+/// settle.
 ///
-/// Method: the sagitta from t and t from the sagitta in turn.
+/// Method: computes the sagitta from t and t from the sagitta in turn, until the sagitta settles.
 #[inline(always)]
 pub fn meet<const N: usize>(rays: &[Ray<'_>; N], branch: &Branch, begin: &RayStart<N>) -> Option<Met<N>> {
     let (wheel, n) = (&rays[0].bodies.wheel, directions(rays));

@@ -1,23 +1,18 @@
-//! The wheel's point on a ray, on any profile: also where the profile turns back across the ray, so that the ray enters it more
+//! The point where a ray meets the wheel, on any profile: also if the profile turns back across the ray, which then enters it more
 //! than once.
 
 use super::meeting::along;
 use super::ray::Ray;
+use super::rays::{SETTLED, STEPS};
 use super::span::{RayPoint, RaySpan};
 use crate::numerics::roots::bracketed;
 use crate::profile::parallel_to;
 use crate::separation::sagitta;
 
-/// Most steps to the sagitta of a point. Each gains some three digits.
-const STEPS: usize = 40;
-
-/// Largest correction \[mm\] along a ray for a rounding of ξ. A larger one may lead to another entry of a ray that touches the profile.
+/// Largest correction \[mm\] along a ray for a rounding of ξ. Where a ray touches the profile, a larger one may belong to another entry.
 const LARGEST_REST: f64 = 1e-6;
 
-/// Roundings of the sagitta below which its steps have settled.
-const SETTLED: f64 = 2.0;
-
-/// A ray seen in the profile's plane, where each of its points is lower by its own sagitta.
+/// A ray in the profile's plane. Each of its points is lowered by its own sagitta.
 struct Sight<'r, 'a> {
     ray: &'r Ray<'a>,
     /// Sagitta of the rail's point \[mm\].
@@ -33,20 +28,19 @@ struct BesideRay {
     by: f64,
 }
 
-/// Finds the wheel's point at a ray's own η′: the first entry above a rail's point outside of the wheel, and the last one below a
-/// point in its material. `None` where the ray misses the wheel's outer surface.
+/// Finds the point where a ray meets the wheel at the ray's own η′. If the rail's point is outside the wheel, this is the nearest
+/// intersection above; if it is inside, the nearest exit below. Returns `None` if the ray misses the wheel's outer surface.
 ///
-/// Accuracy: over both contact segments a few roundings of the terms of t; elsewhere of the profile's extent.
+/// Accuracy: a few roundings of the terms of t over both contact segments, elsewhere a few roundings of the profile's extent.
 pub fn point(ray: &Ray<'_>) -> Option<RayPoint> {
     let simple = RaySpan::holding(ray).and_then(|span| span.point_at(ray.eta));
     simple.filter(|point| ray.begins_on_side(point.t)).or_else(|| searched(ray))
 }
 
-/// Finds the wheel's point at a ray's own η′ on any profile, whether or not the ray crosses each piece only once. Which entry counts,
-/// and `None`, are as for [`point`].
+/// Finds the point of [`point`] on any profile, also if the ray crosses a piece more than once.
 ///
-/// Method: the profile is followed from the abscissa of the rail's point until it first crosses the ray. A part that crosses the ray
-/// twice is found unless the ray touches it within the change of the sagitta.
+/// Method: follows the profile from the abscissa of the rail's point until it first crosses the ray. It misses a part that crosses the
+/// ray twice if the two crossings are closer than the change of the sagitta between them.
 pub fn searched(ray: &Ray<'_>) -> Option<RayPoint> {
     let sight = Sight { ray, own: ray.own_sagitta() };
     let (piece, abscissa) = sight.first_crossing()?;
@@ -77,7 +71,8 @@ impl Sight<'_, '_> {
         (t, e)
     }
 
-    /// Computes how far a point of the profile lies beside the ray. What is far off has fewer digits: its sign counts.
+    /// Computes how far a point of the profile lies beside the ray. The result has fewer digits for a point far from the ray, of which
+    /// only the sign is used.
     fn beside(&self, at: [f64; 2]) -> BesideRay {
         let (ray, mut e) = (self.ray, self.own);
         let (own, mut by) = (ray.beside(at), f64::NAN);
@@ -106,8 +101,8 @@ impl Sight<'_, '_> {
         Some(self.beside([piece.xi[end], piece.heights[end]]))
     }
 
-    /// Finds where the profile, followed from the abscissa of the rail's point, first crosses the ray: its piece and abscissa
-    /// \[mm\]. `None` at the end of the profile, and where it crosses the ray by a step.
+    /// Finds the first crossing of the ray by the profile, followed from the abscissa of the rail's point: the piece and the abscissa
+    /// \[mm\]. Returns `None` if the profile ends before, or crosses the ray by a step.
     fn first_crossing(&self) -> Option<(usize, f64)> {
         let (mut index, mut before, rises) = self.beginning()?;
         loop {
@@ -127,8 +122,8 @@ impl Sight<'_, '_> {
         }
     }
 
-    /// Finds where the profile is followed from: a piece, a place of it, and whether towards larger ξ. `None` where the ray leads
-    /// away from the profile, or passes its end in the material.
+    /// Finds the piece and the place from which the profile is followed, and whether it is followed towards larger ξ. Returns `None` if
+    /// the ray leads away from the profile, or passes its end in the material.
     fn beginning(&self) -> Option<(usize, BesideRay, bool)> {
         let (ray, from) = (self.ray, self.ray.p[0] - self.own * self.ray.bodies.wheel.sin);
         let leans_right = ray.n[0] > 0.0;

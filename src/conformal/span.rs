@@ -66,8 +66,7 @@ pub struct RayPoints {
     pub over_contact: bool,
 }
 
-/// Finds the points at 16 places η \[mm\] of one point of the rail. Returns `None` unless all lie over the piece over which
-/// that of the middle place lies.
+/// Finds the points at 16 places η \[mm\] of one point of the rail. Returns `None` if they do not all lie over one piece.
 #[inline(always)]
 pub fn points(bodies: &RayBodies<'_>, at: &RailPoint, eta: &Lanes) -> Option<RayPoints> {
     let rays = eta.map(|eta| bodies.ray(at, eta));
@@ -99,14 +98,14 @@ pub fn points(bodies: &RayBodies<'_>, at: &RailPoint, eta: &Lanes) -> Option<Ray
 }
 
 impl<'a> RaySpan<'a> {
-    /// Makes the span that begins in the wheel's midplane; `None` where [`Ray::first_piece`] finds no piece.
+    /// Makes the span that begins in the wheel's midplane. Returns `None` if [`Ray::first_piece`] finds no piece.
     pub fn first(ray: &Ray<'a>) -> Option<Self> {
         let piece = ray.first_piece()?;
         let begin = in_midplane(&[*ray], piece)?;
         Some(Self::over(ray, piece, begin, 0.0, false))
     }
 
-    /// Makes the spans of 16 rays without skew that begin in the wheel's midplane; `None` where one has none.
+    /// Makes the spans of 16 rays without skew that begin in the wheel's midplane; `None` for a ray that has none.
     #[inline(always)]
     pub fn firsts(rays: &[Ray<'a>; MANY]) -> [Option<Self>; MANY] {
         let pieces = rays.map(|ray| ray.first_piece());
@@ -126,7 +125,7 @@ impl<'a> RaySpan<'a> {
         spans
     }
 
-    /// Returns the next span; `None` at the end of the profile, and where it has a step or turns back across the ray.
+    /// Returns the next span. Returns `None` at the end of the profile, and if it has a step or turns back across the ray.
     pub fn next(&self) -> Option<Self> {
         let ray = &self.ray;
         let piece = match ray.sides()[1] {
@@ -154,7 +153,7 @@ impl<'a> RaySpan<'a> {
         Self { ray: *ray, piece, branch, begin, w, end, from, joint }
     }
 
-    /// Finds the span that holds a ray's own η′; `None` where [`Self::first`] or [`Self::next`] finds none on the way there.
+    /// Finds the span that holds a ray's own η′. Returns `None` if [`Self::first`] or [`Self::next`] finds none on the way there.
     pub fn holding(ray: &Ray<'a>) -> Option<Self> {
         let mut span = Self::first(ray)?;
         while span.is_passed() {
@@ -174,7 +173,7 @@ impl<'a> RaySpan<'a> {
         w > 0.0 && eta * eta > self.end * (2.0 * w + self.end)
     }
 
-    /// Finds the point at another η′ \[mm\] of the ray; `None` before the span counts, and as for [`meet`].
+    /// Finds the point at another η′ \[mm\] of the ray. Returns `None` if a previous span covers it, and as for [`meet`].
     pub fn point_at(&self, eta: f64) -> Option<RayPoint> {
         let ray = self.ray.at(eta);
         let Met { t: [t], e: [e], w: [w] } = meet(&[ray], self.branch, &self.begin)?;
@@ -230,8 +229,8 @@ impl<'a> RaySpan<'a> {
         self.begin.e[0] * (2.0 * self.w + self.begin.e[0])
     }
 
-    /// Finds sagittae larger by about `runs` \[mm\] than at the beginning: by how much they are, and by how much t
-    /// has grown \[mm\]. No root is sought. NaN where the ray misses the branch.
+    /// Finds points with sagittae larger by about `runs` \[mm\] than at the beginning. Returns by how much the sagittae are larger, and
+    /// by how much t is \[mm\]. No root is sought. The result is NaN if the ray misses the branch.
     #[inline(always)]
     pub fn rises_by<const N: usize>(&self, runs: &Lanes<N>) -> Option<[Lanes<N>; 2]> {
         let (ray, wheel) = (&self.ray, &self.ray.bodies.wheel);

@@ -12,7 +12,7 @@ const FOLLOWED: usize = 5;
 /// circles of both ends of a step are followed. It is empty if no step crosses the grid.
 pub fn beside_steps(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (xi.first(), xi.last()) else { return Vec::new() };
-    let (wheel, skew) = (&relief.wheel, relief.skew);
+    let (wheel, skew) = (&relief.wheel, relief.skew.rotation);
     let pieces = &wheel.section.pieces;
     let ends = wheel.section.steps.iter().flat_map(|&step| [(step - 1, 1), (step, 0)]);
     let mut columns = Vec::new();

@@ -22,7 +22,7 @@ use crate::numerics::nan_max;
 use crate::placement::Placement;
 
 /// Number of columns of one block, which is the unit of work of a thread.
-const BLOCK: usize = MANY;
+pub const BLOCK: usize = MANY;
 
 /// Most points of a grid that is filled by one thread, because waking another takes some 50 µs: for methods that fill
 /// columns, and for methods that work point by point.
@@ -131,10 +131,7 @@ impl Choice {
         let masked = self.method != Method::Pointwise && !covered(placement, xi, axis);
         let kernel = || if masked { Box::new(Masked::new(bare(), placement, axis)) } else { bare() };
         let by_columns = self.method < Method::Pointwise && !masked;
-        if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
-            return fill_with(&mut *kernel(), xi, out);
-        }
-        fill_in_blocks(kernel, xi, out)
+        fill_all(kernel, by_columns, xi, out)
     }
 
     /// Fills the grid by spectral columns, with given strips of every relief of this pair and grid.
@@ -156,10 +153,7 @@ impl Choice {
                 Box::new(Spectral::new(self.fitter(relief), axis, &strips[k]))
             })
         };
-        if out.len() <= FEW_POINTS[0] {
-            return fill_with(&mut *kernel(), xi, out).max(of_strips);
-        }
-        fill_in_blocks(kernel, xi, out).max(of_strips)
+        fill_all(kernel, true, xi, out).max(of_strips)
     }
 
     fn fitter<'a>(&self, relief: Relief<'a>) -> Fitter<'a> {
@@ -178,7 +172,7 @@ fn summed<'a>(
         return Box::new(OverLoft { wheel, rail, axis });
     }
     match placement.under() {
-        Some(under) => Box::new(ReliefSum { wheel, roller: make(1, Relief::new(under)), falls: Vec::new() }),
+        Some(under) => Box::new(ReliefSum::new(wheel, make(1, Relief::new(under)))),
         None => wheel,
     }
 }
@@ -210,12 +204,19 @@ impl Kernel for OverLoft<'_> {
     }
 }
 
-/// The sum of the reliefs of a wheel and of a roller.
-struct ReliefSum<'a> {
+/// The sum of the heights of a wheel over a profile, and of this profile over a roller.
+pub struct ReliefSum<'a> {
     wheel: Box<dyn Kernel + 'a>,
     roller: Box<dyn Kernel + 'a>,
     /// Values of the roller \[mm\].
     falls: Vec<f64>,
+}
+
+impl<'a> ReliefSum<'a> {
+    /// Makes the sum of two kernels.
+    pub fn new(wheel: Box<dyn Kernel + 'a>, roller: Box<dyn Kernel + 'a>) -> Self {
+        Self { wheel, roller, falls: Vec::new() }
+    }
 }
 
 impl Kernel for ReliefSum<'_> {
@@ -241,8 +242,17 @@ fn fill_with(kernel: &mut dyn Kernel, xi: &[f64], out: &mut [f64]) -> f64 {
     kernel.truncation()
 }
 
-/// Fills all columns by one kernel for each thread. Returns the largest truncation error \[mm\].
-fn fill_in_blocks<'k>(kernel: impl Fn() -> Box<dyn Kernel + 'k> + Sync, xi: &[f64], out: &mut [f64]) -> f64 {
+/// Fills all columns, many points by one kernel for each thread. `by_columns` says that the kernel needs less time for a column than
+/// for its points. Returns the largest truncation error \[mm\].
+pub fn fill_all<'k>(
+    kernel: impl Fn() -> Box<dyn Kernel + 'k> + Sync,
+    by_columns: bool,
+    xi: &[f64],
+    out: &mut [f64],
+) -> f64 {
+    if out.len() <= FEW_POINTS[usize::from(!by_columns)] {
+        return fill_with(&mut *kernel(), xi, out);
+    }
     let length = out.len() / xi.len().max(1);
     let blocks = out.par_chunks_mut(BLOCK * length).zip(xi.par_chunks(BLOCK));
     blocks.map_init(&kernel, |kernel, (out, xi)| fill_with(&mut **kernel, xi, out)).reduce(|| 0.0, nan_max)

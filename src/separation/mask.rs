@@ -30,7 +30,7 @@ fn covers(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> bool {
     let wheel = &relief.wheel;
     let (mut over, mut u) = (Interval::NONE, 0f64);
     for [xi, eta] in [[first, low], [first, high], [last, low], [last, high]] {
-        let [shift, eta_w] = relief.wheel_coordinates(xi, eta);
+        let [shift, eta_w] = relief.skew.own(xi, eta);
         (over, u) = (over.with(xi + shift), u.max(eta_w * eta_w));
     }
     let ends =

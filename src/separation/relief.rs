@@ -21,10 +21,37 @@ pub struct Relief<'a> {
     pub wheel: WheelSurface<'a>,
     /// The spans of the last column.
     pub spans: Vec<Span>,
-    /// The rotation from the surface's own directions of the tangent plane to ξ and η.
-    pub skew: UnitComplex<f64>,
+    /// The directions of the surface.
+    pub skew: Skew,
+}
+
+/// The directions of a surface of revolution in the tangent plane, turned by the skew χ.
+#[derive(Debug, Clone, Copy)]
+pub struct Skew {
+    /// The rotation from the surface's own directions to ξ and η.
+    pub rotation: UnitComplex<f64>,
     /// 1 − cos χ, to all digits.
     versine: f64,
+}
+
+impl Skew {
+    /// Returns the directions of the wheel of a placed pair.
+    pub fn new(placement: &Placement) -> Self {
+        let versine = 2.0 * (placement.skew() / 2.0).sin().powi(2);
+        Self { rotation: placement.skew_rotation(), versine }
+    }
+
+    /// Returns whether the own directions differ from ξ and η.
+    pub fn is_some(&self) -> bool {
+        self.rotation.im != 0.0
+    }
+
+    /// Computes ξ′ − ξ and η′ \[mm\] in the own directions. The difference does not cancel.
+    #[inline(always)]
+    pub fn own(&self, xi: f64, eta: f64) -> [f64; 2] {
+        let (sin, cos) = (self.rotation.im, self.rotation.re);
+        if sin == 0.0 { [0.0, eta] } else { [eta * sin - xi * self.versine, eta * cos - xi * sin] }
+    }
 }
 
 /// The point of a surface over one point of the tangent plane.
@@ -58,19 +85,18 @@ impl<'a> Relief<'a> {
             below: placement.lofted_rail().map_or(&placement.rail().section, FramedLoft::plane),
             wheel: WheelSurface::new(placement),
             spans: Vec::with_capacity(4),
-            skew: placement.skew_rotation(),
-            versine: 2.0 * (placement.skew() / 2.0).sin().powi(2),
+            skew: Skew::new(placement),
         }
     }
 
     /// Returns whether the surface's own directions differ from ξ and η.
     pub fn is_skewed(&self) -> bool {
-        self.skew.im != 0.0
+        self.skew.is_some()
     }
 
     /// Finds the point over (ξ, η); returns `None` where there is no surface.
     pub fn point(&mut self, xi: f64, eta: f64) -> Option<ReliefPoint> {
-        let [shift, eta_w] = self.wheel_coordinates(xi, eta);
+        let [shift, eta_w] = self.skew.own(xi, eta);
         let (xi_w, u) = (xi + shift, eta_w * eta_w);
         if u.is_nan() {
             return None;
@@ -126,7 +152,7 @@ impl<'a> Relief<'a> {
     /// Computes the unit normal in (ξ, η, ζ) that points down.
     pub fn normal(&self, point: &ReliefPoint) -> Unit<Vector3<f64>> {
         let own = self.wheel.normal(point.xi_w, point.eta_w, &point.span, &point.point);
-        let turned = self.skew * Vector2::new(own.x, own.y);
+        let turned = self.skew.rotation * Vector2::new(own.x, own.y);
         Unit::new_unchecked(Vector3::new(turned.x, turned.y, own.z))
     }
 
@@ -178,13 +204,6 @@ impl<'a> Relief<'a> {
         }
         let Some(span) = self.spans.first() else { return [f64::NAN; 3] };
         [span.u.low, self.base(xi, shift, span), self.wheel.opening(xi_w, span)]
-    }
-
-    /// Computes ξ′ − ξ and η′ \[mm\] in the surface's own directions of the tangent plane. The difference does not cancel.
-    #[inline(always)]
-    pub fn wheel_coordinates(&self, xi: f64, eta: f64) -> [f64; 2] {
-        let (sin, cos) = (self.skew.im, self.skew.re);
-        if sin == 0.0 { [0.0, eta] } else { [eta * sin - xi * self.versine, eta * cos - xi * sin] }
     }
 
     /// Returns whether a span begins in the midplane, over both contact segments.

@@ -51,7 +51,7 @@ impl CoveredPart {
     fn above(relief: &Relief<'_>, xi: &[f64], axis: &EtaAxis) -> Self {
         let wheel = &relief.wheel;
         let below = |xi: f64, eta: f64| {
-            let [shift, eta_w] = relief.wheel_coordinates(xi, eta);
+            let [shift, eta_w] = relief.skew.own(xi, eta);
             // The axle distance at C is accurate enough, because e varies by thousandths of itself.
             wheel.abscissa(xi + shift, sagitta(wheel.axle, eta_w * eta_w))
         };

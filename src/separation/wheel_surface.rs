@@ -93,7 +93,7 @@ impl<'a> WheelSurface<'a> {
         }
     }
 
-    /// Finds the index of the piece over which the column at ξ begins. In a gap it is the piece that the column would meet
+    /// Finds the index of the piece over which the column at ξ begins; in a gap of the profile, that of the piece that the column meets
     /// first.
     pub(super) fn first_piece(&self, xi: f64) -> Option<usize> {
         let pieces = &self.section.pieces;

@@ -17,7 +17,7 @@ use crate::separation::span::SpanLanes;
 use crate::separation::wheel_surface::WheelSurface;
 
 /// Share of an interval's largest |s| below which an interpolated s would not have the promised thirteen digits.
-pub const SMALL_SHARE: f64 = 1.0 / 64.0;
+const SMALL_SHARE: f64 = 1.0 / 64.0;
 
 /// Writes s \[mm\] of the column at ξ over ascending η to a demanded accuracy; NaN where a body has no surface. Returns the
 /// largest truncation error \[mm\].
@@ -29,8 +29,50 @@ pub fn fill(
     out: &mut [f64],
 ) -> f64 {
     let mut column = SkewedColumn::new(relief, arch, demand, xi);
-    column.fill(eta, out);
+    if column.rail_height.is_nan() {
+        out.fill(f64::NAN);
+    } else {
+        column.fill(eta, out);
+    }
     column.error
+}
+
+/// A column of gaps along η, analytic over one branch of the wheel.
+pub trait AlongEta {
+    /// Writes the gaps \[mm\] at ascending η from one polynomial in η, or at most [`MANY`] gaps at once. Returns the interval from the
+    /// least to the largest magnitude \[mm\]; `None` if the gaps do not lie over one branch, or if one polynomial does not keep the
+    /// demand.
+    fn at_once(&mut self, eta: &[f64], out: &mut [f64]) -> Option<Interval>;
+
+    /// Writes the gaps \[mm\] at η, point by point.
+    fn singly(&mut self, eta: &[f64], out: &mut [f64]);
+
+    /// Writes the gaps \[mm\] at ascending η. An interval without a polynomial is halved, and one where gaps are small is computed anew.
+    fn fill(&mut self, eta: &[f64], out: &mut [f64]) {
+        let few = eta.len() <= MANY;
+        let Some(size) = self.at_once(eta, out) else {
+            if few {
+                return self.singly(eta, out);
+            }
+            let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
+            self.fill(eta.0, out.0);
+            return self.fill(eta.1, out.1);
+        };
+        let is_small = |gap: &f64| gap.abs() < SMALL_SHARE * size.high;
+        // A parabola falls by less than that share between two Chebyshev points.
+        if few || size.low > 2.0 * SMALL_SHARE * size.high {
+            return;
+        }
+        let (Some(begin), Some(end)) = (out.iter().position(is_small), out.iter().rposition(is_small)) else {
+            return;
+        };
+        let small = begin..end + 1;
+        if small.len() <= eta.len() / 2 {
+            self.fill(&eta[small.clone()], &mut out[small]);
+        } else {
+            self.singly(&eta[small.clone()], &mut out[small]);
+        }
+    }
 }
 
 /// One column of a skewed wheel.
@@ -72,101 +114,74 @@ impl<'s, 'a> SkewedColumn<'s, 'a> {
         });
         Self { relief, arch, demand, xi, rail_height, contact, error: 0.0 }
     }
-
-    /// Writes s \[mm\] at ascending η.
-    fn fill(&mut self, eta: &[f64], out: &mut [f64]) {
-        if self.rail_height.is_nan() {
-            return out.fill(f64::NAN);
-        }
-        let (Some(&low), Some(&high)) = (eta.first(), eta.last()) else { return };
-        let over = Interval { low, high };
-        let few = eta.len() <= MANY;
-        let arch = self.arch;
-        let Some(size) = arch.dispatch(EtaInterval { column: self, over, eta, out }) else {
-            if few {
-                return self.relief.column(self.xi, eta, out);
-            }
-            let (eta, out) = (eta.split_at(eta.len() / 2), out.split_at_mut(eta.len() / 2));
-            self.fill(eta.0, out.0);
-            return self.fill(eta.1, out.1);
-        };
-        let is_small = |s: &f64| s.abs() < SMALL_SHARE * size.largest;
-        // A parabola falls by less than that share between two Chebyshev points.
-        if few || size.least > 2.0 * SMALL_SHARE * size.largest {
-            return;
-        }
-        let (Some(begin), Some(end)) = (out.iter().position(is_small), out.iter().rposition(is_small)) else {
-            return;
-        };
-        let small = begin..end + 1;
-        if small.len() <= eta.len() / 2 {
-            self.fill(&eta[small.clone()], &mut out[small]);
-        } else {
-            self.relief.column(self.xi, &eta[small.clone()], &mut out[small]);
-        }
-    }
 }
 
-/// The largest and the least |s| over the Chebyshev points of an interval \[mm\].
-struct Size {
-    largest: f64,
-    least: f64,
+impl AlongEta for SkewedColumn<'_, '_> {
+    fn at_once(&mut self, eta: &[f64], out: &mut [f64]) -> Option<Interval> {
+        self.arch.dispatch(EtaInterval { column: self, eta, out })
+    }
+
+    fn singly(&mut self, eta: &[f64], out: &mut [f64]) {
+        self.relief.column(self.xi, eta, out);
+    }
 }
 
 /// An interval of η of a column that is to be filled. The work is compiled for each kind of machine.
 struct EtaInterval<'c, 's, 'a> {
     column: &'c mut SkewedColumn<'s, 'a>,
-    over: Interval,
     eta: &'c [f64],
     out: &'c mut [f64],
 }
 
 impl pulp::WithSimd for EtaInterval<'_, '_, '_> {
-    type Output = Option<Size>;
+    type Output = Option<Interval>;
 
-    /// Fills the interval. Returns `None` if s does not lie over one branch, or if too few Chebyshev coefficients are as
-    /// small as rounding.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Size> {
-        let Self { column, over, eta, out } = self;
-        let few = eta.len() <= MANY;
-        let (centre, half) = (over.middle(), over.width() / 2.0);
-        let points = if few {
-            lanes(|k| eta[k.min(eta.len() - 1)])
-        } else {
-            let nodes = &*chebyshev::NODES;
-            lanes(|k| centre + half * nodes[k])
-        };
-        let (s, rounding) = column.separations(&points, !few)?;
-        let size = Size {
-            largest: s.iter().fold(0.0, |most, s| s.abs().max(most)),
-            least: s.iter().fold(f64::INFINITY, |least, s| s.abs().min(least)),
-        };
-        if few {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Interval> {
+        let Self { column, eta, out } = self;
+        if eta.len() <= MANY {
+            let last = eta.len().checked_sub(1)?;
+            let (s, _) = column.separations(&lanes(|k| eta[k.min(last)]), false)?;
             out.copy_from_slice(&s[..eta.len()]);
-            return Some(size);
+            return Some(magnitudes(&s));
         }
-        let demand = column.demand;
-        let allowed = demand.absolute.min(demand.relative * size.largest);
-        let dropped = interpolate(simd, &s, over, [allowed, rounding], eta, out)?;
+        let over = Interval::new(*eta.first()?, *eta.last()?);
+        let (s, rounding) = column.separations(&chebyshev_points(over), true)?;
+        let (size, dropped) = interpolate(simd, &s, over, (column.demand, rounding), eta, out)?;
         column.error = column.error.max(dropped);
         Some(size)
     }
 }
 
-/// Writes the interpolant of values at the 16 Chebyshev points of an interval to all η \[mm\]. Returns the sum
-/// of the coefficients that were dropped, or `None` if too few of them are within `demand` or as small as `rounding` \[mm\].
+/// Returns the 16 Chebyshev points of an interval.
+#[inline(always)]
+pub fn chebyshev_points(over: Interval) -> Lanes {
+    let (nodes, centre, half) = (&*chebyshev::NODES, over.middle(), over.width() / 2.0);
+    lanes(|k| centre + half * nodes[k])
+}
+
+/// Returns the interval from the least to the largest magnitude. A NaN does not count.
+#[inline(always)]
+fn magnitudes(values: &Lanes) -> Interval {
+    let most = values.iter().fold(0.0, |most, value| value.abs().max(most));
+    Interval { low: values.iter().fold(f64::INFINITY, |least, value| value.abs().min(least)), high: most }
+}
+
+/// Writes the interpolant of values at the 16 Chebyshev points of an interval to all η \[mm\]. Returns the magnitudes of the values,
+/// and the sum of the coefficients that were dropped; `None` if too few of them are within the demand or as small as `rounding`
+/// \[mm\].
 #[inline(always)]
 pub fn interpolate<S: pulp::Simd>(
     simd: S,
     values: &Lanes,
     over: Interval,
-    [demand, rounding]: [f64; 2],
+    (demand, rounding): (Demand, f64),
     eta: &[f64],
     out: &mut [f64],
-) -> Option<f64> {
+) -> Option<(Interval, f64)> {
     let (c, centre, half) = (chebyshev::coefficients(values), over.middle(), over.width() / 2.0);
-    let (kept, dropped) = kept(&c, demand, rounding)?;
+    let size = magnitudes(values);
+    let (kept, dropped) = kept(&c, demand.absolute.min(demand.relative * size.high), rounding)?;
     let mut powers = chebyshev::to_powers(&c, kept);
     let mut shrink = 1.0;
     for c in &mut powers[1..kept] {
@@ -179,7 +194,7 @@ pub fn interpolate<S: pulp::Simd>(
         return None;
     }
     simd.vectorize(SpanRun { begin: [powers[0], centre], c, u: eta, out });
-    Some(dropped)
+    Some((size, dropped))
 }
 
 /// Returns the number of Chebyshev coefficients that are needed, and the sum of the others. The others are all as small as
@@ -202,7 +217,7 @@ impl SkewedColumn<'_, '_> {
         let (xi, relief) = (self.xi, &mut *self.relief);
         let (mut shift, mut u) = ([0.0; MANY], [0.0; MANY]);
         for k in 0..MANY {
-            let [along, across] = relief.wheel_coordinates(xi, eta[k]);
+            let [along, across] = relief.skew.own(xi, eta[k]);
             (shift[k], u[k]) = (along, across * across);
         }
         let xi_w = lanes(|k| xi + shift[k]);
@@ -216,7 +231,9 @@ impl SkewedColumn<'_, '_> {
             return None;
         }
         let abscissae = lanes(|k| wheel.abscissa(xi_w[k], points.e[k]));
-        if !inside(piece, &abscissae, between) || !beyond_steps(wheel, span.piece, [&xi_w, &u], between) {
+        if !inside_piece(piece.xi, &abscissae, between)
+            || !beyond_steps(wheel, span.piece, [&xi_w, &u], between)
+        {
             return None;
         }
         let begun = here.e[0].iter().filter(|&&e| e == 0.0).count();
@@ -278,12 +295,12 @@ fn widest_step(values: &Lanes) -> f64 {
     values.windows(2).fold(0.0, |widest, pair| (pair[1] - pair[0]).abs().max(widest))
 }
 
-/// Returns whether abscissae of the profile are inside one piece. If `between`, this also covers all places between
+/// Returns whether abscissae of the profile are inside those of one piece. If `between`, this also covers all places between
 /// neighbouring ones: the abscissa is a parabola up to terms of fourth order, so that a turn between two points moves it by
 /// less than the step between two others.
 #[inline(always)]
-fn inside(piece: &Piece, abscissae: &Lanes, between: bool) -> bool {
+pub fn inside_piece(piece: Interval, abscissae: &Lanes, between: bool) -> bool {
     let margin = if between { widest_step(abscissae) } else { 0.0 };
-    let inner = piece.xi.grown(-margin);
+    let inner = piece.grown(-margin);
     abscissae.iter().all(|&abscissa| inner.contains(abscissa))
 }

@@ -37,7 +37,7 @@ impl Kernel for Parabolic<'_> {
             return self.arch.dispatch(SpanRun { begin: [gap, 0.0], c: &[q], u: &self.axis.u, out });
         }
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
-            let [shift, eta_w] = self.relief.wheel_coordinates(xi, eta);
+            let [shift, eta_w] = self.relief.skew.own(xi, eta);
             let u = eta_w * eta_w;
             let [u0, base, local] = self.relief.parabola(xi, shift, u);
             *s = base + self.constant.unwrap_or(local) * (u - u0);
