@@ -114,7 +114,7 @@ impl Columns<'_, '_> {
             let Some(at) = at else { continue };
             if skewed {
                 let (bodies, demand, arch) = (&self.gap.bodies, self.demand, self.arch);
-                let mut column = SkewedColumn { bodies, at, demand, arch, error: self.error };
+                let mut column = SkewedRays { bodies, at, demand, arch, error: self.error };
                 column.fill(self.axis.eta(), out);
                 self.error = column.error;
             }
@@ -180,9 +180,7 @@ impl Columns<'_, '_> {
             }
             next = if from < reach * reach { span.next() } else { None };
         }
-        if self.axis.symmetric {
-            mirror(out, self.axis.first_positive);
-        }
+        mirror(out, self.axis.mirrored());
         end
     }
 
@@ -286,8 +284,8 @@ impl SpanFit<'_, '_> {
     }
 }
 
-/// A column of t over a skewed wheel.
-struct SkewedColumn<'w, 'a> {
+/// The rays of one σ to a skewed wheel: a column of t.
+struct SkewedRays<'w, 'a> {
     bodies: &'w RayBodies<'a>,
     at: &'w RailPoint,
     demand: Demand,
@@ -296,7 +294,7 @@ struct SkewedColumn<'w, 'a> {
     error: f64,
 }
 
-impl AlongEta for SkewedColumn<'_, '_> {
+impl AlongEta for SkewedRays<'_, '_> {
     fn at_once(&mut self, eta: &[f64], out: &mut [f64]) -> Option<Interval> {
         if eta.len() <= MANY {
             return None;
@@ -315,7 +313,7 @@ impl AlongEta for SkewedColumn<'_, '_> {
 
 /// Interpolation of a part of a skewed column. The work is compiled for each kind of machine.
 struct Interpolation<'i, 'w, 'a> {
-    column: &'i SkewedColumn<'w, 'a>,
+    column: &'i SkewedRays<'w, 'a>,
     eta: &'i [f64],
     out: &'i mut [f64],
 }
@@ -326,7 +324,7 @@ impl pulp::WithSimd for Interpolation<'_, '_, '_> {
     /// Returns the magnitudes of t at the Chebyshev points, and the sum of the dropped coefficients.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
-        let Self { column: &SkewedColumn { bodies, at, demand, .. }, eta, out } = self;
+        let Self { column: &SkewedRays { bodies, at, demand, .. }, eta, out } = self;
         let over = Interval::new(*eta.first()?, *eta.last()?);
         let RayPoints { t, abscissae, piece, over_contact } = points(bodies, at, &chebyshev_points(over))?;
         if !inside_piece(piece, &abscissae, true) {

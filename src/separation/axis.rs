@@ -43,6 +43,11 @@ impl EtaAxis {
         self.symmetric && self.eta.len().is_multiple_of(WIDEST)
     }
 
+    /// Returns the number of leading values that are the mirror image of the last ones.
+    pub(crate) fn mirrored(&self) -> usize {
+        if self.symmetric { self.first_positive } else { 0 }
+    }
+
     /// Returns two ranges of indices whose u \[mm²\] lies in an interval, without its lower end unless that is 0: the first for
     /// η ≥ 0, the second for η < 0. On a symmetric axis the second range is empty, because the values are mirrored.
     pub(crate) fn ranges(&self, u: Interval) -> [Range<usize>; 2] {

@@ -75,8 +75,9 @@ impl Plan {
 ///
 /// The estimate: spectral columns measure their truncation error in every strip, at its nodes and between them, and in some
 /// of the columns outside strips; the columns on both sides of the places where a step of the wheel crosses the grid are
-/// compared with single points. Other methods are compared with single points in some hundred columns, and while they fill a
-/// grid over which a body ends or the wheel steps, everywhere. Cost: for spectral columns about that of filling the grid.
+/// compared with single points. A quadratic form is compared with single points at some 50 places, other methods at some 4,000; while
+/// they fill a grid over which a body ends or the wheel steps, everywhere. Cost: for spectral columns about that of filling the grid,
+/// for a quadratic form half of it.
 ///
 /// # Examples
 /// ```

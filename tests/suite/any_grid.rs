@@ -78,7 +78,7 @@ fn any_grid_is_within_its_estimate() {
     let radius = prop_oneof![300.0..600.0f64, (1.3..5.0f64).prop_map(|power| 10f64.powf(power))];
     let yaw = prop_oneof![2 => Just(0.0), 1 => -0.15..0.15f64];
     let tolerance = prop::sample::select(vec![FULL_PRECISION, 1e-9, 1e-6, 1e-3]);
-    let method = prop::sample::select(vec![None, Some(Method::Spectral)]);
+    let method = prop::sample::select(vec![None, Some(Method::Spectral), Some(Method::Quadratic)]);
     let placed = (0..pairs.len(), radius, (-40.0..40.0f64, -60.0..70.0f64), yaw);
     let grid = (axis(1.8), axis(1.8), any::<bool>());
     let compared = Cell::new(0);
@@ -94,6 +94,9 @@ fn any_grid_is_within_its_estimate() {
         xi.0 = xi.0.min((0.4 * radius).log10());
         let joints = if on_joints { placement.joints(-100.0, 100.0) } else { Vec::new() };
         let (xi, axis) = (values(&xi, &joints), EtaAxis::new(&values(&eta, &[])));
+        // At a kink there is no quadratic form.
+        let smooth = placement.rail().is_smooth() && placement.wheel().is_smooth();
+        let method = method.filter(|method| *method != Method::Quadratic || smooth);
         within_estimate(&placement, &xi, &axis, tolerance, method)
             .map(drop)
             .map_err(|error| TestCaseError::fail(format!("{}: {error}", pairs[index].name)))

@@ -1,7 +1,6 @@
 //! Parabolas across the midplane, with one coefficient for all columns or one for each column.
 
 use crate::separation::axis::EtaAxis;
-use crate::separation::columns::horner::SpanRun;
 use crate::separation::kernel::Kernel;
 use crate::separation::relief::Relief;
 
@@ -34,7 +33,12 @@ impl Kernel for Parabolic<'_> {
             let [u0, base, local] = self.relief.parabola(xi, 0.0, self.axis.reach * self.axis.reach);
             let q = self.constant.unwrap_or(local);
             let gap = base - q * u0;
-            return self.arch.dispatch(SpanRun { begin: [gap, 0.0], c: &[q], u: &self.axis.u, out });
+            self.arch.dispatch(|| {
+                for (s, u) in out.iter_mut().zip(self.axis.u.iter()) {
+                    *s = gap + q * u;
+                }
+            });
+            return;
         }
         for (s, &eta) in out.iter_mut().zip(&self.axis.eta) {
             let [shift, eta_w] = self.relief.skew.own(xi, eta);

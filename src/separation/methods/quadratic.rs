@@ -3,7 +3,6 @@
 use crate::placement::{Body, Placement};
 use crate::profile::{Section, Side};
 use crate::separation::axis::EtaAxis;
-use crate::separation::columns::horner::SpanRun;
 use crate::separation::gap;
 use crate::separation::kernel::Kernel;
 
@@ -63,6 +62,10 @@ impl Kernel for Quadratic<'_> {
     fn column(&mut self, xi: f64, out: &mut [f64]) {
         let [along, mixed, across] = self.form;
         let (constant, linear) = (along * xi * xi, mixed * xi);
-        self.arch.dispatch(SpanRun { begin: [constant, 0.0], c: &[linear, across], u: &self.axis.eta, out });
+        self.arch.dispatch(|| {
+            for (s, eta) in out.iter_mut().zip(&self.axis.eta) {
+                *s = constant + eta * (linear + across * eta);
+            }
+        });
     }
 }

@@ -62,9 +62,7 @@ impl Kernel for Spectral<'_> {
             return;
         }
         self.single_column(xi, self.axis.reach * self.axis.reach, out);
-        if self.axis.symmetric {
-            mirror(out, self.axis.first_positive);
-        }
+        mirror(out, self.axis.mirrored());
     }
 
     fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
