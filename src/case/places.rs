@@ -108,7 +108,7 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact
 /// within the largest gap of near misses.
 ///
 /// # Errors
-/// No contact; a load that no approach carries; no roll that the loads settle at.
+/// No contact; a load that no approach carries.
 pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<ContactRegion>)>> {
     let Arrangement::Wheelset { position, .. } = &case.setup.arrangement else { return Ok(Vec::new()) };
     let (sides, regions, _) = closed(case, case.question.approach)?;
@@ -177,10 +177,13 @@ const SLOPE_OVER: f64 = 1e-8;
 const SETTLED_ROLL: f64 = 1e-12;
 
 /// Lowers the wheels, and finds the regions under an approach, at the roll at which each wheel carries its load if that is asked
-/// for: both sides then give the middle of the axle one height.
+/// for: both sides then give the middle of the axle one height, to [`SETTLED_ROLL`].
+///
+/// Where a place comes or goes within a region its frame turns, and with it the height jumps. If it jumps over the other side's, the roll
+/// is that of the jump, on one side of it, within [`SLOPE_OVER`].
 ///
 /// # Errors
-/// No contact; no roll at which the heights agree to [`SETTLED_ROLL`] in [`MOST_ROLLS`] tries, as where two places become one region.
+/// No contact.
 fn sunk(
     case: &Case,
     approach: Option<ApproachBy>,
@@ -222,27 +225,15 @@ fn sunk(
         *(if step < 0.0 { &mut range.high } else { &mut range.low }) = here;
         before = Some((here, miss, slope));
         let inside = range.low < here + step && here + step < range.high;
-        if !inside && range.width() < SLOPE_OVER && step.abs() > SLOPE_OVER {
+        // No roll between the two makes up for what is missed: there the heights jump.
+        if !inside && range.width() < SLOPE_OVER && miss.abs() > spread * SLOPE_OVER {
             break;
         }
         let roll = if inside { here + step } else { range.low + range.width() / 2.0 };
         sides = self::sides(case, within, Some(roll))?;
         found = regions(case, &sides, each, most)?;
     }
-    if found.is_err() {
-        return Ok((sides, found));
-    }
-    if case.setup.roll_by_load == RollByLoad::Unasked {
-        // That of first touch, then: a run says how the wheels share the load.
-        let sides = self::sides(case, within, None)?;
-        let found = regions(case, &sides, approach, most)?;
-        return Ok((sides, found));
-    }
-    let (found, expected) = (
-        "no roll that the loads settle at",
-        "a roll at which both loads leave the axle one height: there is none where two places become one region",
-    );
-    Err(Error::new("wheelset: roll", found, expected, "take \"solve\", or give the roll"))
+    Ok((sides, found))
 }
 
 /// Tells whether the roll of a case follows its loads.

@@ -32,6 +32,9 @@ pub const SILENT: Tell<'static> = &|_, _| {};
 /// Share of an axle's load by which the loads of its wheels may differ without a word: more than forces err by.
 const UNEQUAL: f64 = 0.01;
 
+/// Difference \[mm\] of the heights of an axle's middle over its two rails that is none: a settled roll leaves a hundredth.
+const ONE_HEIGHT: f64 = 1e-6;
+
 /// A case and everything computed from it.
 #[derive(Debug, Clone)]
 pub struct Run {
@@ -136,21 +139,43 @@ impl Run {
     /// Says that the wheels of an axle carry unequal parts of its load, as they do under a roll that is not that of the load; `None` of
     /// other loads, and where they differ by less than forces err.
     fn shares_warning(&self) -> Option<String> {
+        if follows(&self.case) {
+            return self.heights_warning();
+        }
         let Some(ApproachBy::AxleLoad(load)) = self.case.question.approach else { return None };
-        let [left, right] = [TrackSide::Left, TrackSide::Right].map(|side| {
-            let own = self.parts.iter().map(|part| &part.site).filter(|site| site.side() == Some(side));
-            own.filter_map(Site::vertical_load).sum::<f64>()
-        });
-        let why = if follows(&self.case) {
-            "the roll is that of first touch, since no roll was found at which each carries half: none settles where two places become one \
-             region"
-        } else {
-            "the roll is the scene's; with roll = \"load\" the axle rolls until each carries half"
-        };
+        let [left, right] = [TrackSide::Left, TrackSide::Right]
+            .map(|side| self.sites_of(side).filter_map(Site::vertical_load).sum::<f64>());
         ((right - left).abs() > UNEQUAL * load).then(|| {
             let [left, right] = [left, right].map(|carried| carried / 1e3);
-            format!("the left wheel carries {left:.2} kN and the right one {right:.2} kN of the axle's load: {why}")
+            format!(
+                "the left wheel carries {left:.2} kN and the right one {right:.2} kN of the axle's load: the roll is the scene's; with \
+                 roll = \"load\" the axle rolls until each carries half"
+            )
         })
+    }
+
+    /// Says by how much the middle of the axle is higher over one rail than over the other where no roll that follows the loads gives
+    /// both one height.
+    fn heights_warning(&self) -> Option<String> {
+        let height = |side| {
+            let site = self.sites_of(side).next()?;
+            let upright = site.contact.placement.upright();
+            Some(site.contact.found.as_ref()?.height_mm - site.approach() / upright)
+        };
+        let higher = height(TrackSide::Left)? - height(TrackSide::Right)?;
+        (higher.abs() > ONE_HEIGHT).then(|| {
+            let side = if higher > 0.0 { TrackSide::Left } else { TrackSide::Right };
+            format!(
+                "each wheel carries its load, but the middle of the axle is {:.4} mm higher over the {side} rail than over the other: the \
+                 height jumps at this roll, where a place comes or goes within a region, and no roll gives both one height",
+                higher.abs()
+            )
+        })
+    }
+
+    /// Returns the sites of a side, that which touches first before the others.
+    fn sites_of(&self, side: TrackSide) -> impl Iterator<Item = &Site> {
+        self.parts.iter().map(|part| &part.site).filter(move |site| site.side() == Some(side))
     }
 
     /// Finds the creepages of a part, in its contact frame and, on a left side, in the axes of its mirror image; `None` for
