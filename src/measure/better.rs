@@ -1,5 +1,5 @@
 //! Finds the built-in profiles that fit a measured one better than its nominal does, or as well. One fits as well if it fits over the same
-//! length and no more metal lies outside of it, or if much less metal lies outside of it.
+//! length and no more metal lies outside of it, if much less metal lies outside of it, or if it fits over more beyond what lies outside.
 
 use super::align::{consensus, onto};
 use super::curve::MarkedCurve;
@@ -70,7 +70,8 @@ pub(super) fn rivals(nominal: &Nominal, curve: &MarkedCurve, side: Side, align: 
     let more = MORE.max(MORE_SHARE * length);
     let is_as_good = |of: &FittedMotion| {
         let as_long = of.length >= fits - AS_LONG && outside(of) <= own_outside + AS_LONG;
-        as_long || outside(of) + more <= own_outside
+        let as_much = of.length - outside(of) >= fits - own_outside;
+        as_long || as_much || outside(of) + more <= own_outside
     };
     let mut others: Vec<_> = others.filter(|other| is_as_good(&other.0)).collect();
     let longest = others.iter().map(|other| other.0.length).fold(0.0, f64::max);
