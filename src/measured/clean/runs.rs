@@ -21,8 +21,11 @@ const JUMP_AT_END: f64 = 4.0;
 const LEVEL: usize = 3;
 /// Number of edges on each side that make a step's neighbourhood.
 const NEIGHBOURHOOD: usize = 10;
-/// Largest number of vertices of a run: the larger of this number and a fortieth of those of the smoothed path.
-const LONGEST: usize = 12;
+/// Largest number of vertices of a run: the larger of this number and a fortieth of those of the smoothed path. Runs of 28 were seen, whose
+/// rows had lost their minus.
+const LONGEST: usize = 40;
+/// Largest number of vertices of a run at an end, where a step is all that shows it.
+const LONGEST_AT_END: usize = 12;
 /// Least number of vertices of the path to one of a run: what most of the points say is the curve.
 const FEW: usize = 4;
 /// Least distance of a point from the smoothed path where it is off it, as a multiple of that within which three in four are: nine
@@ -419,7 +422,7 @@ impl RunSearch<'_> {
     /// Returns the run that jumps off the path at one of its ends.
     fn at_ends(&self, lengths: &[f64]) -> Vec<[usize; 2]> {
         let n = self.chain.len();
-        let longest = LONGEST.min(n / 10);
+        let longest = LONGEST_AT_END.min(n / 10);
         let jumps = |k: usize| {
             let near =
                 (k.saturating_sub(NEIGHBOURHOOD)..(n - 1).min(k + NEIGHBOURHOOD + 1)).filter(|j| *j != k);

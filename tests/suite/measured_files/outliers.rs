@@ -114,6 +114,18 @@ fn drop_out(points: &mut [[f64; 2]], random: &mut Random) -> Vec<bool> {
     bad
 }
 
+/// Takes the minus away from one or two runs of rows: from z, or from x; returns which rows were changed.
+fn lose_minus(points: &mut [[f64; 2]], random: &mut Random) -> Vec<bool> {
+    let whole = points.to_vec();
+    for _ in 0..=random.below(2) {
+        let many = 2 + random.below(39);
+        let from = 4 + random.below(points.len() - many - 8);
+        let axis = usize::from(random.below(3) > 0);
+        points[from..from + many].iter_mut().for_each(|at| at[axis] = at[axis].abs());
+    }
+    points.iter().zip(&whole).map(|(at, was)| at != was).collect()
+}
+
 /// A profile with runs of bad rows.
 struct BadScan {
     truth: Truth,
@@ -123,10 +135,18 @@ struct BadScan {
     off: Vec<bool>,
 }
 
+/// Spoils rows of points and returns which ones.
+type Fault = fn(&mut [[f64; 2]], &mut Random) -> Vec<bool>;
+
 impl BadScan {
     /// The case of a number; `None` if all its bad rows lie on the surface.
     fn random(case: u64) -> Option<Self> {
-        let mut random = Random::stream(651, case);
+        Self::with(drop_out, 651, case)
+    }
+
+    /// The case of a number under a seed, with rows that a fault spoils; `None` if they all lie on the surface.
+    fn with(fault: Fault, seed: u64, case: u64) -> Option<Self> {
+        let mut random = Random::stream(seed, case);
         let truth = Truth::random(&mut random);
         let noise = if random.below(3) == 0 { 0.0 } else { random.between(0.0, 0.01) };
         let along_x = random.below(5) < 2;
@@ -137,7 +157,7 @@ impl BadScan {
             noise: [if along_x { 0.0 } else { noise }, noise],
         };
         let mut points = truth.scanned(&scan, &mut random);
-        let bad = drop_out(&mut points, &mut random);
+        let bad = fault(&mut points, &mut random);
         // Zeros may lie on the surface.
         let off = |row: usize| bad[row] && truth.distance(points[row]) > 0.1f64.max(12.0 * noise);
         let off: Vec<bool> = (0..points.len()).map(off).collect();
@@ -156,37 +176,73 @@ impl BadScan {
     }
 }
 
-#[test]
-fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
-    let (mut cases, mut silent, mut wrong, mut refused) = (0, 0, 0, 0);
-    // Of 739 a run on a steep face has a low step before its first one.
-    for case in seeds().chain([739]) {
-        let Some(bad) = BadScan::random(case) else { continue };
-        cases += 1;
+/// Counts of profiles with bad rows.
+#[derive(Debug, Default)]
+struct BadScans {
+    cases: u64,
+    silent: u64,
+    wrong: u64,
+    refused: u64,
+}
+
+impl BadScans {
+    /// Reads a profile as it is, and with the repair that is named.
+    fn add(&mut self, case: u64, bad: &BadScan) {
+        self.cases += 1;
         let is_silent = said(&bad.read(&[])).is_empty();
-        silent += u64::from(is_silent);
+        self.silent += u64::from(is_silent);
         let keeps_bad = |read: &Measured| read.points.iter().any(|point| bad.off[point.number - 1]);
         let named = bad.named();
         let (what, was) = match bad.read(&[Repair::RemoveSpikes]) {
             Err(_) if bad.read(&named).is_ok_and(|read| keeps_bad(&read)) => {
-                (format!("wrong after {named:?}"), &mut wrong)
+                (format!("wrong after {named:?}"), &mut self.wrong)
             }
-            Err(error) => (error.to_string(), &mut refused),
-            Ok(read) if keeps_bad(&read) => ("wrong after the repair".to_owned(), &mut wrong),
+            Err(error) => (error.to_string(), &mut self.refused),
+            Ok(read) if keeps_bad(&read) => ("wrong after the repair".to_owned(), &mut self.wrong),
             Ok(_) if is_silent => ("silent".to_owned(), &mut 0),
-            Ok(_) => continue,
+            Ok(_) => return,
         };
         *was += 1;
-        println!("case {case}, {} points every {} mm: {what}", bad.points.len(), bad.scan.spacing);
+        let off: Vec<usize> = (0..bad.off.len()).filter(|row| bad.off[*row]).collect();
+        let far = off.iter().map(|row| bad.truth.distance(bad.points[*row])).fold(0.0, f64::max);
+        let rows = (off.first().map(|row| row + 1), off.last().map(|row| row + 1), off.len());
+        println!(
+            "case {case}, {} points every {} mm, {rows:?} off by up to {far:.2}: {what}",
+            bad.points.len(),
+            bad.scan.spacing
+        );
     }
-    println!(
-        "runs of bad rows: {cases} profiles, {silent} silent, {wrong} wrong after the repair, {refused} refused after it"
-    );
-    assert!(2 * cases > seeds().count() as u64, "{cases} with bad rows");
-    assert!(
-        silent * 500 <= cases && wrong * 200 <= cases && refused * 15 <= cases,
-        "{silent} {wrong} {refused}"
-    );
+
+    /// Checks that of so many profiles at most one is silent, one wrong after the repair, and one refused after it.
+    fn check(&self, [one_silent, one_wrong, one_refused]: [u64; 3]) {
+        println!("{self:?}");
+        let Self { cases, silent, wrong, refused } = *self;
+        assert!(2 * cases > seeds().count() as u64, "{cases} with bad rows");
+        let few =
+            silent * one_silent <= cases && wrong * one_wrong <= cases && refused * one_refused <= cases;
+        assert!(few, "{self:?}");
+    }
+}
+
+#[test]
+fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
+    let mut counts = BadScans::default();
+    // Of 739 a run on a steep face has a low step before its first one.
+    for case in seeds().chain([739]) {
+        BadScan::random(case).iter().for_each(|bad| counts.add(case, bad));
+    }
+    counts.check([500, 200, 15]);
+}
+
+/// The shares are what is reached, not what is wanted: of 201 profiles 13 are silent, 21 wrong after the repair and 12 refused. Most of the
+/// wrong ones are lower than 0.7 mm, on crowns and treads near z = 0; the others have lost the minus of steep faces or of x.
+#[test]
+fn rows_without_their_minus_are_named_or_repaired_and_never_taken_for_surface() {
+    let mut counts = BadScans::default();
+    for case in seeds() {
+        BadScan::with(lose_minus, 655, case).iter().for_each(|bad| counts.add(case, bad));
+    }
+    counts.check([10, 7, 12]);
 }
 
 #[test]
