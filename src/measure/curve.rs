@@ -68,7 +68,7 @@ impl MarkedCurve {
         Some(self.of_points(self.points.again(deviates)?))
     }
 
-    /// Returns the curve as its points are smoothed half as far, in their axes; `None` for points without noise.
+    /// Returns the curve as its points are smoothed half as far, or joined by chords, in their axes; `None` for a drawing.
     pub fn less_smoothed(&self) -> Option<Self> {
         Some(self.of_points(self.points.less_smoothed()?))
     }

@@ -193,7 +193,7 @@ impl AlignedProfile<'_> {
     }
 
     /// Returns how far each value is off if the profile lies otherwise: by what instruments and flange backs are off, and as the fit on
-    /// the nominal or on rivals has it; by what smoothing takes of the shape; and by the noise of the points.
+    /// the nominal or on rivals has it; by what smoothing or a spline makes of the shape; and by the noise of the points.
     fn if_off(&self, curve: &MarkedCurve, options: &MeasureOptions, values: ValueRow) -> ValueRow {
         let mut most = values.map(|value| value.map(|_| 0.0f64));
         let mut at_most = |moved: ValueRow, share: f64, gone: bool| {

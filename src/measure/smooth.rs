@@ -4,7 +4,7 @@
 //! crossing or a rise of the smoothed curve is not the extreme of noisy points. Of points without noise nothing is changed.
 
 use crate::measured::noise::Deviates;
-use crate::profile::{Mark, Profile, Station};
+use crate::profile::{Mark, Profile, Shape, Station};
 
 /// Fewest points whose noise can be told from their shape.
 const LEAST_POINTS: usize = 50;
@@ -45,6 +45,8 @@ pub(super) struct NoisyPoints {
     window: f64,
     /// The parabolas of the smoothed curve; empty where the points are taken as they are.
     smooth: Vec<Local>,
+    /// Whether the curve through the points as they are is a spline, which swings beside a corner, not a drawing.
+    splined: bool,
 }
 
 /// A point's parabola: its value and slope at the point, its curvature, and the chord of its window.
@@ -100,6 +102,7 @@ impl NoisyPoints {
         if own.sigma > 0.0 || dropped || own.at.windows(3).any(turns_back) || has_outlier(&smooth) {
             own.smooth = smooth;
         }
+        own.splined = profile.segments().iter().all(|of| matches!(of.shape, Shape::Polynomial(_)));
         own
     }
 
@@ -142,11 +145,36 @@ impl NoisyPoints {
         (!self.smooth.is_empty()).then(|| self.marks(&self.smooth))
     }
 
-    /// Returns the marks as [`Self::smoothed`] does, with windows half as wide; `None` for points without noise. Such windows take a
-    /// sixteenth of the shape that whole ones take, so that the difference tells what smoothing has taken.
+    /// Returns the marks as [`Self::smoothed`] does, with windows half as wide; of points without noise those of the chords of the ones near
+    /// the curve; `None` for a drawing. Such windows take a sixteenth of the shape that whole ones take, so that the difference tells what
+    /// smoothing has taken; chords tell what splines and parabolas make of a corner.
     pub fn less_smoothed(&self) -> Option<(Vec<Mark>, Vec<bool>)> {
-        let narrow = Self { window: 0.5 * self.window, ..self.clone() };
-        (self.sigma > 0.0).then(|| narrow.marks(&narrow.robust()))
+        if self.sigma > 0.0 {
+            let narrow = Self { window: 0.5 * self.window, ..self.clone() };
+            return Some(narrow.marks(&narrow.robust()));
+        }
+        (self.splined || !self.smooth.is_empty()).then(|| self.chords())
+    }
+
+    /// Returns marks at both ends of every chord, as [`Self::smoothed`] does.
+    fn chords(&self) -> (Vec<Mark>, Vec<bool>) {
+        let least = lost_from(&self.smooth);
+        let is_near = |k: &usize| self.smooth.get(*k).is_none_or(|local| local.across.abs() <= least);
+        let near: Vec<usize> = (0..self.at.len()).filter(is_near).collect();
+        let (mut marks, mut unknown, mut s) = (Vec::new(), Vec::new(), 0.0);
+        for pair in near.windows(2) {
+            let [a, b] = [self.at[pair[0]], self.at[pair[1]]];
+            let length = distance(a, b);
+            let [cos, sin] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+            let mark = |[x, z]: [f64; 2], s: f64| {
+                let station = Station { x, z, cos, sin };
+                Mark { s, station, curvature: 0.0, segment: 0 }
+            };
+            marks.extend([mark(a, s), mark(b, s + length)]);
+            unknown.extend([self.unknown[pair[0]..pair[1]].contains(&true), false]);
+            s += length;
+        }
+        (marks, unknown)
     }
 
     /// Measures the smoothed curve once more, with the noise of the points; `None` for points without noise.
