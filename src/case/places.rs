@@ -108,7 +108,7 @@ fn search(case: &Case, approach: Option<ApproachBy>) -> Result<Vec<PlacedContact
 /// within the largest gap of near misses.
 ///
 /// # Errors
-/// No contact; a load that no approach carries.
+/// No contact; a load that no approach carries; no roll that the loads settle at.
 pub(super) fn rows_under_load(case: &Case) -> Result<Vec<(SweepRow, Option<ContactRegion>)>> {
     let Arrangement::Wheelset { position, .. } = &case.setup.arrangement else { return Ok(Vec::new()) };
     let (sides, regions, _) = closed(case, case.question.approach)?;
@@ -179,11 +179,11 @@ const SETTLED_ROLL: f64 = 1e-12;
 /// Lowers the wheels, and finds the regions under an approach, at the roll at which each wheel carries its load if that is asked
 /// for: both sides then give the middle of the axle one height, to [`SETTLED_ROLL`].
 ///
-/// Where a place comes or goes within a region its frame turns, and with it the height jumps. If it jumps over the other side's, the roll
-/// is that of the jump, on one side of it, within [`SLOPE_OVER`].
+/// If a place comes or goes within a region, its frame turns and the height jumps. If one height jumps over the other, the result is a roll
+/// beside the jump, closer to it than [`SLOPE_OVER`].
 ///
 /// # Errors
-/// No contact.
+/// No contact; neither one height nor a jump found in [`MOST_ROLLS`] tries.
 fn sunk(
     case: &Case,
     approach: Option<ApproachBy>,
@@ -232,6 +232,11 @@ fn sunk(
         let roll = if inside { here + step } else { range.low + range.width() / 2.0 };
         sides = self::sides(case, within, Some(roll))?;
         found = regions(case, &sides, each, most)?;
+    }
+    if found.is_ok() && sides.len() == 2 && range.width() >= SLOPE_OVER {
+        let (found, expected) =
+            ("no roll that the loads settle at", "a roll at which both loads leave the axle one height");
+        return Err(Error::new("wheelset: roll", found, expected, "take \"solve\", or give the roll"));
     }
     Ok((sides, found))
 }

@@ -127,7 +127,7 @@ impl Run {
         let first = self.parts.first();
         let placing = first.into_iter().flat_map(|part| doubts_of_placing(&self.case, &part.site));
         out.extend(placing.map(|doubt| doubt.to_string()));
-        out.extend(self.shares_warning());
+        out.extend(if follows(&self.case) { self.heights_warning() } else { self.shares_warning() });
         for part in &self.parts {
             let folder = &part.site.folder;
             let place = if folder.is_empty() { String::new() } else { format!("{folder}: ") };
@@ -136,12 +136,9 @@ impl Run {
         out
     }
 
-    /// Says that the wheels of an axle carry unequal parts of its load, as they do under a roll that is not that of the load; `None` of
-    /// other loads, and where they differ by less than forces err.
+    /// Says that the wheels of an axle carry unequal parts of its load under a roll that does not follow the load. Returns `None` for other
+    /// loads, and if the parts differ by less than forces err.
     fn shares_warning(&self) -> Option<String> {
-        if follows(&self.case) {
-            return self.heights_warning();
-        }
         let Some(ApproachBy::AxleLoad(load)) = self.case.question.approach else { return None };
         let [left, right] = [TrackSide::Left, TrackSide::Right]
             .map(|side| self.sites_of(side).filter_map(Site::vertical_load).sum::<f64>());
@@ -154,8 +151,8 @@ impl Run {
         })
     }
 
-    /// Says by how much the middle of the axle is higher over one rail than over the other where no roll that follows the loads gives
-    /// both one height.
+    /// Says by how much the middle of the axle is higher over one rail than over the other under a roll that follows the loads. Returns
+    /// `None` if both are one height.
     fn heights_warning(&self) -> Option<String> {
         let height = |side| {
             let site = self.sites_of(side).next()?;

@@ -180,7 +180,7 @@ impl Columns<'_, '_> {
             }
             next = if from < reach * reach { span.next() } else { None };
         }
-        mirror(out, self.axis.mirrored());
+        mirror(out, self.axis.mirrored_count());
         end
     }
 

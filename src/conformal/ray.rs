@@ -61,7 +61,7 @@ impl<'a> RayBodies<'a> {
 
     /// Tells whether the wheel is skewed.
     pub fn is_skewed(&self) -> bool {
-        self.skew.is_some()
+        self.skew.turns()
     }
 
     /// Returns the rounding \[mm\] of a height of the wheel beyond its contact segment.

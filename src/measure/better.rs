@@ -1,5 +1,6 @@
-//! Finds the built-in profiles that fit a measured one better than its nominal does, or as well. One fits as well if it fits over the same
-//! length and no more metal lies outside of it, if much less metal lies outside of it, or if it fits over more beyond what lies outside.
+//! Finds the built-in profiles that fit a measured one better than its nominal does, or as well. One fits as well in three cases: it fits over
+//! the same length, and no more metal lies outside of it; much less metal lies outside of it; or the length over which it fits, less the
+//! length over which metal lies outside of it, is no shorter.
 
 use super::align::{consensus, onto};
 use super::curve::MarkedCurve;

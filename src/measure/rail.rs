@@ -13,8 +13,9 @@ use crate::numerics::interval::Interval;
 
 /// Half width \[mm\] of the crown whose radius is fitted, that of the MiniProf's own calculation.
 const CROWN: f64 = 10.0;
-/// Rounding \[mm\] of the ends of the fitted crown. A crown that is measured less far has another radius: wear leaves a ridge there.
-const EDGE: f64 = 1e-6;
+/// Rounding \[mm\] of both ends of the fitted crown. All of it has to be measured: wear leaves ridges at its ends, without which the radius
+/// is another one.
+const CROWN_ROUNDING: f64 = 1e-6;
 /// Height \[mm\] of the gauge face through which a line is fitted: through less of a worn face it is another line.
 const FACE: f64 = 10.0;
 /// Depth \[mm\] below the top to which flow is sought: deeper, the fillet to the underside of a head begins.
@@ -211,7 +212,7 @@ fn crown_radius(head: &Head) -> Result<f64, String> {
         all.map(|(mark, weight)| (mark.station.x - about, mark.station.z - head.top.z, weight))
     };
     let Interval { low: from, high: to } = inside().map(|(x, ..)| x).fold(Interval::of(0.0), Interval::with);
-    if from > EDGE - CROWN || to < CROWN - EDGE {
+    if from > CROWN_ROUNDING - CROWN || to < CROWN - CROWN_ROUNDING {
         return Err(format!(
             "the crown is measured from {from:.3} to {to:.3} mm about its top, not over {CROWN}"
         ));

@@ -38,13 +38,13 @@ impl EtaAxis {
         &self.eta
     }
 
-    /// Returns whether columns are computed for one half of η alone, in whole vectors on every machine, and the other half is mirrored.
-    pub(crate) fn is_mirrored(&self) -> bool {
+    /// Returns whether η is symmetric and fills whole vectors on every machine: columns are then computed for one half and mirrored.
+    pub(crate) fn has_whole_halves(&self) -> bool {
         self.symmetric && self.eta.len().is_multiple_of(WIDEST)
     }
 
     /// Returns the number of leading values that are the mirror image of the last ones.
-    pub(crate) fn mirrored(&self) -> usize {
+    pub(crate) fn mirrored_count(&self) -> usize {
         if self.symmetric { self.first_positive } else { 0 }
     }
 

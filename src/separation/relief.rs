@@ -41,8 +41,8 @@ impl Skew {
         Self { rotation: placement.skew_rotation(), versine }
     }
 
-    /// Returns whether the own directions differ from ξ and η.
-    pub fn is_some(&self) -> bool {
+    /// Returns whether the surface's own directions differ from ξ and η.
+    pub fn turns(&self) -> bool {
         self.rotation.im != 0.0
     }
 
@@ -91,7 +91,7 @@ impl<'a> Relief<'a> {
 
     /// Returns whether the surface's own directions differ from ξ and η.
     pub fn is_skewed(&self) -> bool {
-        self.skew.is_some()
+        self.skew.turns()
     }
 
     /// Finds the point over (ξ, η); returns `None` where there is no surface.

@@ -191,7 +191,7 @@ impl<const SINGLE: bool> pulp::WithSimd for Evaluation<'_, SINGLE> {
 impl<const SINGLE: bool> PerDegree for Evaluation<'_, SINGLE> {
     #[inline(always)]
     fn run<S: pulp::Simd, const N: usize>(self, simd: S, n: usize) {
-        if self.axis.is_mirrored() {
+        if self.axis.has_whole_halves() {
             self.outwards::<S, N>(simd, n);
         } else {
             self.whole::<S, N>(simd, n);

@@ -62,7 +62,7 @@ impl Kernel for Spectral<'_> {
             return;
         }
         self.single_column(xi, self.axis.reach * self.axis.reach, out);
-        mirror(out, self.axis.mirrored());
+        mirror(out, self.axis.mirrored_count());
     }
 
     fn columns(&mut self, xi: &[f64], out: &mut [f64]) {
@@ -168,8 +168,8 @@ impl Spectral<'_> {
     }
 }
 
-/// Fills columns of s \[mm\] by the code for one kind of machine. A test compares their bits. `out` has the values of one column after another, at ξ \[mm\] in ascending order. Returns the largest number of spans
-/// that a column of a strip has.
+/// Fills columns of s \[mm\] by the code for one kind of machine, of which a test compares the bits. `out` has the values of one
+/// column after another, at ξ \[mm\] in ascending order. Returns the largest number of spans that a column of a strip has.
 ///
 /// Accuracy: [`FULL_PRECISION`].
 pub fn columns_by(
