@@ -32,8 +32,9 @@ pub const SILENT: Tell<'static> = &|_, _| {};
 /// Share of an axle's load by which the loads of its wheels may differ without a word: more than forces err by.
 const UNEQUAL: f64 = 0.01;
 
-/// Difference \[mm\] of the heights of an axle's middle over its two rails that is none: a settled roll leaves a hundredth.
-const ONE_HEIGHT: f64 = 1e-6;
+/// Difference \[mm\] of the heights of an axle's middle over its two rails that is none. A wheel carries some 1 kN more for each µm that it sinks:
+/// with heights so near to each other the loads differ by far less than [`UNEQUAL`].
+const ONE_HEIGHT: f64 = 1e-4;
 
 /// A case and everything computed from it.
 #[derive(Debug, Clone)]
