@@ -39,7 +39,8 @@ const MOST_ADDED: f64 = 1e5;
 /// Most rounds of refinement in which edges of the boundary are divided.
 const ROUNDS: usize = 12;
 
-/// Most nodes made in all attempts and rounds at a component before the best mesh so far is taken: a few seconds.
+/// Most nodes made in all attempts and rounds at a component, and twice the share of the edges of the next round: beyond it the best mesh so
+/// far is taken. The round that ends an attempt may take as much again: a few seconds.
 const MOST_MADE: usize = 2_000_000;
 
 /// Number of edges around a thin part from which on they count more than their nodes: 5,000 take 40 ms, and 30,000 take half a second, so
@@ -243,17 +244,28 @@ fn best(
     let wanted = RingSpacing::new(tracer, rings, EdgeLimits { size, chord_error: CHORD_SHARE * size });
     for attempt in 0..ATTEMPTS {
         let mut chains = wanted.nodes(tracer, SHORTER.powi(attempt))?;
+        let edges = chains.iter().map(Vec::len).sum::<usize>() as f64;
         let region = meshed(tracer, rings, &mut chains, area, size, &mut made)?;
         let least = least_angle(&region, &sharp_nodes(&chains));
         if best.as_ref().is_none_or(|(before, ..)| least > *before) {
             best = Some((least, region, chains));
         }
-        if least >= FRAC_PI_6 || made > MOST_MADE {
+        if least >= FRAC_PI_6 || is_beyond(made, (edges / SHORTER) as usize) {
             break;
         }
     }
     let found = best.map(|(_, region, chains)| (region, chains, made));
     found.ok_or_else(|| Error::new("mesh", "no angles", "a patch with an area", "take a larger approach"))
+}
+
+/// Returns what a round counts for so many edges, besides its nodes.
+fn share(edges: usize) -> usize {
+    edges * edges / LONG_BOUNDARY
+}
+
+/// Returns whether a round of so many edges, after which its divided edges take another round, is too much after what was made.
+fn is_beyond(made: usize, edges: usize) -> bool {
+    made + 2 * share(edges) > MOST_MADE
 }
 
 /// Returns for every node of some chains whether their polygon has an angle below 30° there.
@@ -282,9 +294,9 @@ fn meshed(
     let most = MOST_ADDED + 4.0 * area / largest;
     for round in 0..=ROUNDS {
         let Polygon { points, edges, from, tips } = Polygon::new(chains);
-        let last = round == ROUNDS || *made > MOST_MADE;
+        let last = round == ROUNDS || is_beyond(*made, edges.len());
         let region = delaunay::refined(&points, &edges, largest, most as usize, last)?;
-        *made += region.points.len() + edges.len() * edges.len() / LONG_BOUNDARY;
+        *made += region.points.len() + share(edges.len());
         if region.divided.is_empty() {
             let mut region = smoothed(region, points.len(), &edges)?;
             region.triangles.extend(tips);
