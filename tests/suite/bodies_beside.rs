@@ -152,7 +152,8 @@ fn holds_c(name: &str, placement: &Placement, approach: f64) {
 #[test]
 fn a_patch_holds_c_though_c_lies_on_an_end() {
     let mut found = 0;
-    for number in 0..campaign::scenes() {
+    // Of 1484 C is the rail's end itself, in a frame that is turned from the tangent there.
+    for number in campaign::seeds().chain([1484]) {
         let dice = &mut Random::new(number);
         let half = dice.between(4.0, 20.0);
         let coefficients: Vec<f64> =

@@ -115,6 +115,22 @@ fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
     Some(first..last + 1)
 }
 
+/// Makes pieces that end within `rounding` \[mm\] of the origin end there, if none holds it: a contact lies on its profile, but the end of
+/// a profile that is seen from the contact there may lie a rounding beside it.
+pub(super) fn reach_origin(pieces: &mut [Piece], rounding: f64) {
+    let next = pieces.partition_point(|piece| piece.xi.high < 0.0);
+    let (before, after) = pieces.split_at_mut(next);
+    if after.first().is_some_and(|piece| piece.xi.low <= 0.0) {
+        return;
+    }
+    if let Some(piece) = before.last_mut().filter(|piece| piece.xi.high >= -rounding) {
+        piece.xi.high = 0.0;
+    }
+    if let Some(piece) = after.first_mut().filter(|piece| piece.xi.low <= rounding) {
+        piece.xi.low = 0.0;
+    }
+}
+
 /// Returns the indices of the pieces that begin at another ξ than where the piece before ends, or whose heights there differ by more
 /// than `rounding` \[mm\].
 pub(super) fn steps(pieces: &[Piece], rounding: f64) -> Vec<usize> {
