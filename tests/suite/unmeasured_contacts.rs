@@ -8,15 +8,15 @@ use wheelrail::internal::Random;
 use wheelrail::measured::{CurveKind, Options, Repair, profile};
 use wheelrail::profile::trace;
 use wheelrail::search::{ONE_CONTACT, Position, Roll, Selection, Sweep, WheelsetOnTrack};
-use wheelrail::{Pair, Profile, RailDistance, Side, WheelDistance, inclination, scene, standards};
+use wheelrail::{Interval, Pair, Profile, RailDistance, Side, WheelDistance, inclination, scene, standards};
 
 use crate::campaign;
 
 /// A scan of a rail with a run of points off the curve.
 struct BadScan {
     text: String,
-    /// Abscissae from the point before the run to the one behind it \[mm\].
-    x: [f64; 2],
+    /// The point before the run and the one behind it \[mm\].
+    beside: [[f64; 2]; 2],
     /// Number of the run's first point.
     first: usize,
 }
@@ -34,7 +34,7 @@ impl BadScan {
         let off = dice.between(0.1, 0.3) * *dice.pick(&[-1.0, 1.0]);
         let z = |k: usize| points[k][1] + 0.001 * (k as f64).sin() + if run.contains(&k) { off } else { 0.0 };
         let text = (0..points.len()).map(|k| format!("{},{}\n", points[k][0], z(k))).collect();
-        Self { text, x: [points[first - 1][0], points[first + count][0]], first: first + 1 }
+        Self { text, beside: [points[first - 1], points[first + count]], first: first + 1 }
     }
 
     fn profile(&self, repair: &[Repair]) -> Result<Profile> {
@@ -69,8 +69,8 @@ fn doubts(run: &Run) -> Vec<String> {
 fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
     let drawn = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
     let (mut on, mut away, mut swept) = (0, 0, 0);
-    // Of 190 a part of the patch that does not hold C lies on them.
-    for seed in (0..campaign::scenes()).chain([190]) {
+    // Of 190 a part of the patch that does not hold C lies on them; of 411 one on the gauge corner, far below the tangent plane.
+    for seed in campaign::seeds().chain([190, 411]) {
         let dice = &mut Random::stream(653, seed);
         let offset = dice.between(-4.0, 5.0);
         let plain = run(drawn.clone(), offset)?;
@@ -84,14 +84,15 @@ fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
         if !bad.segments().iter().any(wheelrail::Segment::is_gap) {
             continue;
         }
-        let name = format!("{seed}: offset {offset}, points off from {} to {}", scan.x[0], scan.x[1]);
+        let x = scan.beside.map(|[x, _]| x);
+        let name = format!("{seed}: offset {offset}, points off from {} to {}", x[0], x[1]);
         let found = run(bad.clone(), offset)?;
         let said = doubts(&found);
         let distance = |part: &wheelrail::case::Part| {
             let frame = part.site.contact.placement.rail().contact_frame();
+            let run = Interval::around(scan.beside.map(|at| frame.inverse_transform_point(&at.into()).x));
             let from = |component: &wheelrail::Component| {
-                let [low, high] = component.xi.ends().map(|xi| frame.translation.x + xi * frame.rotation.re);
-                (scan.x[0] - high).max(low - scan.x[1])
+                (run.low - component.xi.high).max(component.xi.low - run.high)
             };
             let patch = part.site.contact.whole_patch().expect("a patch");
             patch.components.iter().map(from).fold(f64::INFINITY, f64::min)
@@ -116,8 +117,8 @@ fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
             .position(&Position { lateral: offset, yaw: 0.0, roll: Roll::Neglect }, &mut rows)?;
         for (row, doubts) in Profiles::drawn(pair).landmarks().of_rows(&rows) {
             let has = doubts.list().any(|(kind, _)| kind == DoubtKind::Unmeasured);
-            let inside = row.contact.rail_x - scan.x[0] > 1e-3 && scan.x[1] - row.contact.rail_x > 1e-3;
-            let outside = row.contact.rail_x < scan.x[0] - 1e-3 || row.contact.rail_x > scan.x[1] + 1e-3;
+            let inside = row.contact.rail_x - x[0] > 1e-3 && x[1] - row.contact.rail_x > 1e-3;
+            let outside = row.contact.rail_x < x[0] - 1e-3 || row.contact.rail_x > x[1] + 1e-3;
             assert!(if has { !outside } else { !inside }, "{name}: {row:?}");
             assert_eq!(doubts.kinds().to_string().contains("unmeasured"), has);
             swept += usize::from(has);
