@@ -39,8 +39,8 @@ const MOST_ADDED: f64 = 1e5;
 /// Most rounds of refinement in which edges of the boundary are divided.
 const ROUNDS: usize = 12;
 
-/// Most nodes made in all attempts and rounds at a component, and twice the share of the edges of the next round: beyond it the best mesh so
-/// far is taken. The round that ends an attempt may take as much again: a few seconds.
+/// Most that all attempts and rounds at a component may count before the best mesh so far is taken: nodes, [`edge_cost`] of every round, and
+/// twice that of the next one. Its nodes are not known before, and may be as many again. This takes a few seconds.
 const MOST_MADE: usize = 2_000_000;
 
 /// Number of edges around a thin part from which on they count more than their nodes: 5,000 take 40 ms, and 30,000 take half a second, so
@@ -107,7 +107,7 @@ pub struct TriangleMesh {
     /// Largest distance of the exact boundary from the edges between its nodes \[mm\], for each component: at most a
     /// hundredth of the size.
     pub chord_error: Vec<f64>,
-    /// Nodes made for each component in all attempts, and a share of the square of its edges: what the mesh has cost, at most 4·10⁶.
+    /// Nodes made for each component in all attempts, and a thousandth of the squares of its edges: what the mesh has cost, at most 4·10⁶.
     pub made: Vec<usize>,
 }
 
@@ -244,13 +244,13 @@ fn best(
     let wanted = RingSpacing::new(tracer, rings, EdgeLimits { size, chord_error: CHORD_SHARE * size });
     for attempt in 0..ATTEMPTS {
         let mut chains = wanted.nodes(tracer, SHORTER.powi(attempt))?;
-        let edges = chains.iter().map(Vec::len).sum::<usize>() as f64;
+        let edges = chains.iter().map(Vec::len).sum::<usize>();
         let region = meshed(tracer, rings, &mut chains, area, size, &mut made)?;
         let least = least_angle(&region, &sharp_nodes(&chains));
         if best.as_ref().is_none_or(|(before, ..)| least > *before) {
             best = Some((least, region, chains));
         }
-        if least >= FRAC_PI_6 || is_beyond(made, (edges / SHORTER) as usize) {
+        if least >= FRAC_PI_6 || is_beyond(made, (edges as f64 / SHORTER) as usize) {
             break;
         }
     }
@@ -258,14 +258,14 @@ fn best(
     found.ok_or_else(|| Error::new("mesh", "no angles", "a patch with an area", "take a larger approach"))
 }
 
-/// Returns what a round counts for so many edges, besides its nodes.
-fn share(edges: usize) -> usize {
+/// Returns what a round counts for its edges, besides its nodes.
+fn edge_cost(edges: usize) -> usize {
     edges * edges / LONG_BOUNDARY
 }
 
-/// Returns whether a round of so many edges, after which its divided edges take another round, is too much after what was made.
+/// Returns whether another round, of so many edges, would pass [`MOST_MADE`]. It counts twice, since edges that it divides take one more.
 fn is_beyond(made: usize, edges: usize) -> bool {
-    made + 2 * share(edges) > MOST_MADE
+    made + 2 * edge_cost(edges) > MOST_MADE
 }
 
 /// Returns for every node of some chains whether their polygon has an angle below 30° there.
@@ -281,7 +281,7 @@ fn least_angle(region: &MeshRegion, sharp: &[bool]) -> f64 {
 }
 
 /// Meshes the region inside the chains. Nodes that the mesh needs on the boundary are added to the chains. `made` grows by the
-/// number of nodes made, and by a share of the square of the number of edges.
+/// number of nodes made, and by [`edge_cost`].
 fn meshed(
     tracer: &mut BoundaryTracer<'_>,
     rings: &[Ring],
@@ -296,7 +296,7 @@ fn meshed(
         let Polygon { points, edges, from, tips } = Polygon::new(chains);
         let last = round == ROUNDS || is_beyond(*made, edges.len());
         let region = delaunay::refined(&points, &edges, largest, most as usize, last)?;
-        *made += region.points.len() + share(edges.len());
+        *made += region.points.len() + edge_cost(edges.len());
         if region.divided.is_empty() {
             let mut region = smoothed(region, points.len(), &edges)?;
             region.triangles.extend(tips);

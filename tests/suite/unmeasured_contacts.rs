@@ -90,9 +90,9 @@ fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
         let said = doubts(&found);
         let distance = |part: &wheelrail::case::Part| {
             let frame = part.site.contact.placement.rail().contact_frame();
-            let run = Interval::around(scan.beside.map(|at| frame.inverse_transform_point(&at.into()).x));
+            let off = Interval::around(scan.beside.map(|at| frame.inverse_transform_point(&at.into()).x));
             let from = |component: &wheelrail::Component| {
-                (run.low - component.xi.high).max(component.xi.low - run.high)
+                (off.low - component.xi.high).max(component.xi.low - off.high)
             };
             let patch = part.site.contact.whole_patch().expect("a patch");
             patch.components.iter().map(from).fold(f64::INFINITY, f64::min)

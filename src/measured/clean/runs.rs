@@ -423,34 +423,34 @@ impl RunSearch<'_> {
         [before, after].into_iter().filter(long).max_by_key(|run| run[1] - run[0])
     }
 
-    /// Returns the run that a step without another one begins or ends, if its points have lost the sign of a coordinate: in the mirror of that
-    /// axis the path goes on at both ends. Near the axis it goes on at the other end as it is, too; one that does not comes first.
+    /// Returns the run that a step without another one begins or ends, if its points have lost the minus of x or z. Both sides of the step and
+    /// both coordinates are tried. A run whose far end does not join the path as it is counts before one where the curve crosses the axis, and
+    /// a shorter one before a longer one.
     fn mirrored_beside(&self, step: usize) -> Option<[usize; 2]> {
         let (before, after) = self.chain.split_at(step + 1);
         let before: Vec<Point> = before.iter().rev().take(self.wanted.longest + 2).copied().collect();
-        let ways = [[&before[..], after], [after, &before[..]]];
-        let all = [[0, 0], [0, 1], [1, 0], [1, 1]].into_iter();
-        let found = all.filter_map(|[way, axis]| {
-            self.mirrored(ways[way], axis).map(|(goes_on, count)| (goes_on, count, way == 1))
-        });
-        let (_, count, is_after) = found.min()?;
-        Some(if is_after { [step + 1, step + count] } else { [step + 1 - count, step] })
+        let of_side =
+            |sides: [&[Point]; 2]| [0, 1].map(|axis| self.mirrored(sides, axis)).into_iter().flatten();
+        let runs_before = of_side([&before, after]).map(|run| (run, [step + 1 - run.1, step]));
+        let runs_after = of_side([after, &before]).map(|run| (run, [step + 1, step + run.1]));
+        runs_before.chain(runs_after).min_by_key(|(run, _)| *run).map(|(_, range)| range)
     }
 
-    /// Returns how many of the first points of a side of a step go on from the other side in the mirror of x or z (`axis` 0 or 1), and
-    /// whether the path goes on at their end as it is.
+    /// Finds the shortest run from a step on along one side of it that joins the path at both ends with the other sign of x (`axis` 0) or z
+    /// (1). The points of either side begin at the step. Returns whether the curve crosses the axis at the run's far end, so that the path goes
+    /// on there as it is, too, and the number of points.
     fn mirrored(&self, [side, other]: [&[Point]; 2], axis: usize) -> Option<(bool, usize)> {
         let mirror = |p: Point| if axis == 0 { Point { x: -p.x, ..p } } else { Point { z: -p.z, ..p } };
-        let [&first, &second, &p, &q] = [side.first()?, side.get(1)?, other.first()?, other.get(1)?];
-        if !self.goes_on([q, p, mirror(first), mirror(second)]) {
+        let [&first, &second] = [side.first()?, side.get(1)?];
+        if !self.goes_on([*other.get(1)?, *other.first()?, mirror(first), mirror(second)]) {
             return None;
         }
-        let signed = |p: &&Point| p.xz()[axis] * first.xz()[axis] > 0.0;
-        let most = side.iter().take(self.wanted.longest).take_while(signed).count();
+        let has_sign = |p: &&Point| p.xz()[axis] * first.xz()[axis] > 0.0;
+        let most = side.iter().take(self.wanted.longest).take_while(has_sign).count();
         (2..=most).find_map(|count| {
-            let &[p, a, b, q] = side.get(count - 2..count + 2)? else { return None };
-            let mirrored = self.goes_on([mirror(p), mirror(a), b, q]);
-            mirrored.then(|| (self.goes_on([p, a, b, q]), count))
+            let &[p, last, next, q] = side.get(count - 2..count + 2)? else { return None };
+            let joins = self.goes_on([mirror(p), mirror(last), next, q]);
+            joins.then(|| (self.goes_on([p, last, next, q]), count))
         })
     }
 

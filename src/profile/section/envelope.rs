@@ -28,9 +28,9 @@ pub struct Piece {
     pub(super) slopes: OnceLock<Interval>,
 }
 
-/// Returns the outer envelope of all branches, in order of ξ. With `at_contact` the frame is that of a contact: other heads
-/// then count only where the sheet through C has ended.
-pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<Piece> {
+/// Returns the outer envelope of all branches, in order of ξ. With a rounding of their ends \[mm\] the frame is that of a contact: other
+/// heads then count only where the sheet through C has ended, and an end beside C is at C.
+pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: Option<f64>) -> Vec<Piece> {
     let with_heights = |(xi, branch): (Interval, usize)| {
         let whole = &branches[branch];
         let height = |end: usize| {
@@ -41,10 +41,14 @@ pub(super) fn pieces(branches: &[Branch], side: Side, at_contact: bool) -> Vec<P
         Piece { xi, branch, heights, ends: OnceLock::new(), slopes: OnceLock::new() }
     };
     let mut outer = intervals(branches, side);
-    if at_contact {
+    if at_contact.is_some() {
         outer = without_other_heads(branches, outer);
     }
-    outer.into_iter().map(with_heights).collect()
+    let mut pieces: Vec<Piece> = outer.into_iter().map(with_heights).collect();
+    if let Some(rounding) = at_contact {
+        reach_origin(&mut pieces, rounding);
+    }
+    pieces
 }
 
 /// Replaces the sheets of other heads by the sheet through C, as far as that goes.
@@ -115,9 +119,9 @@ fn sheet_at_origin(branches: &[Branch]) -> Option<Range<usize>> {
     Some(first..last + 1)
 }
 
-/// Makes pieces that end within `rounding` \[mm\] of the origin end there, if none holds it: a contact lies on its profile, but the end of
-/// a profile that is seen from the contact there may lie a rounding beside it.
-pub(super) fn reach_origin(pieces: &mut [Piece], rounding: f64) {
+/// If no piece holds the origin, moves the ends within `rounding` \[mm\] of it there. C lies on its profile, but where it is the profile's end,
+/// the turn into the contact frame may put that end beside it.
+fn reach_origin(pieces: &mut [Piece], rounding: f64) {
     let next = pieces.partition_point(|piece| piece.xi.high < 0.0);
     let (before, after) = pieces.split_at_mut(next);
     if after.first().is_some_and(|piece| piece.xi.low <= 0.0) {

@@ -98,10 +98,7 @@ impl Section {
         let rounding = ONE_JOINT * (profile.extent() + frame.x.abs() + frame.z.abs());
         let branches = branches(profile, &view, contact, rounding);
         let contact = contact.and_then(|point| branches.iter().position(|b| b.is_contact(point.segment)));
-        let mut pieces = envelope::pieces(&branches, side, at_contact);
-        if at_contact {
-            envelope::reach_origin(&mut pieces, rounding);
-        }
+        let pieces = envelope::pieces(&branches, side, at_contact.then_some(rounding));
         let steps = envelope::steps(&pieces, rounding);
         Self { frame, branches, pieces, steps, view, contact }
     }
