@@ -410,8 +410,9 @@ const AT_A_JUMP: [(&str, &str, &str, f64); 2] =
     [("60E1", "S1002", "1:40", 6.260_393_172), ("60E1", "S1002", "1:40", 6.27)];
 /// Difference of the heights over both rails of an axle that rests \[mm\].
 const ONE_HEIGHT: f64 = 1e-8;
-/// Distance \[rad\] from a roll within which it has a jump, and the one at which the heights on both sides of the jump are those at it.
+/// Distance \[rad\] from an axle's roll up to which a jump of the heights is sought.
 const BESIDE: f64 = 2e-8;
+/// Distance \[rad\] of the two rolls on both sides of a jump at which halving ends.
 const AT_JUMP: f64 = 1e-13;
 /// Largest distance \[rad\] of an axle's roll from a jump.
 const NEAR_JUMP: f64 = 1e-8;
