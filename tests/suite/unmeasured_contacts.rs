@@ -69,8 +69,9 @@ fn doubts(run: &Run) -> Vec<String> {
 fn pressures_on_points_off_the_curve_are_doubted() -> Result<()> {
     let drawn = standards::rail("60E1")?.rotated(inclination(1.0, 40.0)?);
     let (mut on, mut away, mut swept) = (0, 0, 0);
-    // Of 190 a part of the patch that does not hold C lies on them; of 411 one on the gauge corner, far below the tangent plane.
-    for seed in campaign::seeds().chain([190, 411]) {
+    // Of 190 a part of the patch that does not hold C lies on them; of 411 one on the gauge corner, far below the tangent plane. Those of 721
+    // lie beside z = 0, where the curve is nearly its own mirror.
+    for seed in campaign::seeds().chain([190, 411, 721]) {
         let dice = &mut Random::stream(653, seed);
         let offset = dice.between(-4.0, 5.0);
         let plain = run(drawn.clone(), offset)?;
