@@ -436,9 +436,9 @@ impl RunSearch<'_> {
         runs_before.chain(runs_after).min_by_key(|(run, _)| *run).map(|(_, range)| range)
     }
 
-    /// Finds the shortest run of the wanted height from a step on along one side of it that joins the path at both ends with the other sign of
-    /// x (`axis` 0) or z (1). The points of either side begin at the step. Returns whether the curve crosses the axis at the run's far end, so that the path goes
-    /// on there as it is, too, and the number of points.
+    /// Finds the shortest run that begins at a step and joins the path at both ends if x (`axis` 0) or z (1) changes its sign, and whose points
+    /// then move as far as those of the wanted runs. It lies on one `side` of the step; the points of either side begin at the step. Returns
+    /// whether the curve crosses the axis at the run's far end, so that the path goes on there as it is, too, and the number of points.
     fn mirrored(&self, [side, other]: [&[Point]; 2], axis: usize) -> Option<(bool, usize)> {
         let mirror = |p: Point| if axis == 0 { Point { x: -p.x, ..p } } else { Point { z: -p.z, ..p } };
         let [&first, &second] = [side.first()?, side.get(1)?];
@@ -447,7 +447,7 @@ impl RunSearch<'_> {
         }
         let has_sign = |p: &&Point| p.xz()[axis] * first.xz()[axis] > 0.0;
         let most = side.iter().take(self.wanted.longest).take_while(has_sign).count();
-        // Beside its axis a curve is nearly its own mirror.
+        // Beside the axis any part of a curve is nearly its own mirror.
         let high = side.iter().position(|p| 2.0 * p.xz()[axis].abs() >= self.wanted.least)?;
         (2.max(high + 1)..=most).find_map(|count| {
             let &[p, last, next, q] = side.get(count - 2..count + 2)? else { return None };
