@@ -436,9 +436,9 @@ impl RunSearch<'_> {
         runs_before.chain(runs_after).min_by_key(|(run, _)| *run).map(|(_, range)| range)
     }
 
-    /// Finds the shortest run that begins at a step and joins the path at both ends if x (`axis` 0) or z (1) changes its sign, and whose points
-    /// then move as far as those of the wanted runs. It lies on one `side` of the step; the points of either side begin at the step. Returns
-    /// whether the curve crosses the axis at the run's far end, so that the path goes on there as it is, too, and the number of points.
+    /// Finds the shortest run on one `side` of a step that joins the path at both ends if x (`axis` 0) or z (1) changes its sign. At least one
+    /// of its points must move by the least height of the wanted runs. The points of either side begin at the step. Returns whether the curve
+    /// crosses the axis at the run's far end, so that the path goes on there as it is, too, and the number of points.
     fn mirrored(&self, [side, other]: [&[Point]; 2], axis: usize) -> Option<(bool, usize)> {
         let mirror = |p: Point| if axis == 0 { Point { x: -p.x, ..p } } else { Point { z: -p.z, ..p } };
         let [&first, &second] = [side.first()?, side.get(1)?];
