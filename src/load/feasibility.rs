@@ -3,9 +3,7 @@
 use nalgebra::Point2;
 use serde::Serialize;
 
-use crate::patch::in_valleys::monotone::monotone;
-use crate::patch::in_valleys::valleys::Valleys;
-use crate::patch::{BySamples, Patch, Window, least_on_roller, turning_points};
+use crate::patch::{BySamples, Patch, Window, least_separation, turning_points};
 use crate::placement::Placement;
 use crate::separation::{Evaluator, midplane_gap};
 
@@ -66,10 +64,9 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     if BySamples::apply_to(placement, 0.0) {
         return by_overlap(placement);
     }
-    let along_zeta = match (placement.skew() == 0.0, placement.under()) {
-        (true, _) => least_in_midplane(placement)?,
-        (false, None) => least_under_skew(placement)?,
-        (false, Some(_)) => least_on_roller(placement)?.into(),
+    let along_zeta = match placement.skew() == 0.0 {
+        true => least_in_midplane(placement)?,
+        false => least_separation(placement)?.into(),
     };
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());
     let apart = |gap: f64| gap >= -ROUNDING * extent;
@@ -116,32 +113,6 @@ fn least_in_midplane(placement: &Placement) -> Option<(f64, f64, f64)> {
         let gap = midplane_gap(placement, xi);
         if least.is_none_or(|(smallest, ..)| gap < smallest) {
             least = Some((gap, xi, 0.0));
-        }
-    }
-    least
-}
-
-/// Finds (s, ξ, η) \[mm\] of the least s over all valleys of a skewed wheel.
-fn least_under_skew(placement: &Placement) -> Option<(f64, f64, f64)> {
-    let (valleys, mut evaluator) = (Valleys::new(placement), Evaluator::new(placement));
-    let reach = placement.rail().section.reach()?;
-    let at_contact = evaluator.separation(0.0, 0.0);
-    let mut least = (!at_contact.is_nan()).then_some((at_contact, 0.0, 0.0));
-    let mut intervals = Vec::new();
-    for k in (0..valleys.creases.len()).filter(|&k| valleys.creases[k].is_valley) {
-        intervals.clear();
-        let smallest = least.map_or(f64::INFINITY, |(smallest, ..)| smallest);
-        monotone(&valleys, &placement.rail().section, k, reach, |s| s.low < smallest, &mut intervals);
-        for interval in &intervals {
-            // Where the rail steps, its right side is next to the joint.
-            for xi in [interval.low.next_up(), interval.high] {
-                let spot = valleys.spot(k, xi);
-                let below = evaluator.rail_height(xi);
-                let s = valleys.separation(&spot, below, |moved| evaluator.separation(xi + moved, spot.eta));
-                if !s.is_nan() && least.is_none_or(|(smallest, ..)| s < smallest) {
-                    least = Some((s, xi, spot.eta));
-                }
-            }
         }
     }
     least

@@ -1,11 +1,9 @@
 //! Bands: parts of a component in which each ξ has one interval of η.
 
-use super::by_samples::SMOOTH;
 use super::edges::EdgeFinder;
 use super::end::End;
 use super::grading::Grading;
-use super::outline::Outline;
-use super::slice::Slice;
+use super::slice::{Slice, Slicer};
 use super::stretch::{Stretch, StretchFit};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
@@ -16,22 +14,20 @@ use crate::placement::Body;
 /// Distance of two corners, as a share of the band's length, up to which they count as one.
 pub(super) const ONE_CORNER: f64 = 1e-11;
 
+/// Share of a slice up to which its ends on both sides of a line count as the same.
+pub(super) const ONE_SIDE: f64 = 1e-9;
+
 /// Width next to an end, as a share of that in the middle, up to which a band ends in a point there.
 const NARROW: f64 = 1e-5;
+
+/// How far an edge along the window is moved out, as a share of the band's length.
+const OUTSIDE: f64 = 1e-3;
 
 /// Rounding of s in units of the rounding of the coordinates.
 const ROUNDINGS: f64 = 4.0;
 
-/// A place at which s may be least.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Turn {
-    /// The valley along which s turns, or the lane of samples; `None` where slices have no valleys.
-    pub(super) valley: Option<usize>,
-    /// ξ \[mm\].
-    pub(super) xi: f64,
-    /// s − δ over the valley \[mm\]: no point of its slice at ξ lies lower. NaN if it is not known.
-    pub(super) depth: f64,
-}
+/// Relative accuracy of the interpolated boundary from samples: a spline across the rail bends anew in every cell.
+const SMOOTH: f64 = 1e-9;
 
 /// A range of ξ over which a component has one interval of η, whose ends vary without a jump.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,9 +38,8 @@ pub(crate) struct Band {
     pub(crate) ends: [Option<End>; 2],
     /// Interval of η \[mm\] at either end of `xi`. It has no width at a tip, unless s is level along that end.
     pub(crate) sides: [Interval; 2],
-    /// Pairs (ξ, valleys) by ascending ξ: the valleys that lie in the band up to that ξ, the deepest first, from which slices are
-    /// found. Of samples it is the band's lane; empty where slices are found by roots, and by the formula without skew.
-    pub(super) valleys: Vec<(f64, Vec<usize>)>,
+    /// Number of the lane from which slices are found; `None` where a line has one slice.
+    pub(super) lane: Option<usize>,
     /// Both ends of `xi`, and every ξ between them where a side may have a corner \[mm\], ascending.
     pub(crate) corners: Vec<f64>,
     /// The edges between the corners, as if there were no window in η; by ascending ξ.
@@ -54,24 +49,13 @@ pub(crate) struct Band {
 }
 
 impl Band {
-    /// Returns the valleys in the band at ξ, the deepest first. There are none where slices are found without valleys.
-    pub(super) fn valleys_at(&self, xi: f64) -> &[usize] {
-        let k = self.valleys.partition_point(|(to, _)| *to < xi).min(self.valleys.len().saturating_sub(1));
-        self.valleys.get(k).map_or(&[], |(_, valleys)| valleys)
-    }
-
-    /// Returns the valley or lane from which the slice at ξ is found; `None` where slices are found without valleys.
-    pub(crate) fn valley(&self, xi: f64) -> Option<usize> {
-        self.valleys_at(xi).first().copied()
-    }
-
     /// Makes a band without corners and stretches; [`Self::fit`] finds the latter.
     pub(super) fn new(xi: Interval, ends: [Option<End>; 2], sides: [Interval; 2], window: Interval) -> Self {
-        Self { xi, ends, sides, valleys: Vec::new(), corners: Vec::new(), stretches: Vec::new(), window }
+        Self { xi, ends, sides, lane: None, corners: Vec::new(), stretches: Vec::new(), window }
     }
 
-    /// Fits interpolants to the edges between the corners.
-    pub(super) fn fit(&mut self, outline: &mut Outline<'_>) {
+    /// Fits interpolants to the edges between the corners, of which those that are nearly one are made one.
+    pub(super) fn fit(&mut self, slicer: &mut Slicer<'_>) {
         let length = self.xi.width();
         let apart = |corner: f64, other: f64| (corner - other).abs() > ONE_CORNER * length;
         let mut corners = vec![self.xi.low];
@@ -83,7 +67,7 @@ impl Band {
         corners.push(self.xi.high);
         // A band with a corner next to an end may be as wide there as anywhere.
         let mut width = |xi: f64| {
-            let edges = outline.slicer.edges(xi, self.valley(xi));
+            let edges = slicer.edges(xi, self.lane);
             edges.map_or(0.0, |[low, high]| high - low)
         };
         let mut blunted = |end: f64| {
@@ -97,53 +81,60 @@ impl Band {
         });
         let blunt = |end: usize| self.ends[end] == Some(End::Tip) && self.sides[end].has_width();
         let root = [0, 1].map(|end| matches!(self.ends[end], None | Some(End::ProfileEnd)) || blunt(end));
-        let noise = self.noise(outline);
+        let noise = self.noise(slicer);
         let mut stretches = Vec::new();
-        let mut finder = outline.slicer.is_over_raised().then(|| EdgeFinder::new(outline.slicer.placement()));
+        let many = slicer.is_over_raised() && self.lane.is_none();
+        let mut finder = many.then(|| EdgeFinder::new(slicer.placement()));
         // ξ, the square of half the width and the middle of the last two slices that were found one by one.
         let mut known = [[f64::NAN; 3]; 2];
+        // An edge along the window is moved out, so that it is cut off there to the last digit.
+        let (window, out) = (self.window, OUTSIDE * length);
+        let beyond = |[low, high]: [f64; 2]| {
+            [
+                if low == window.low { low - out } else { low },
+                if high == window.high { high + out } else { high },
+            ]
+        };
         let edges = |xi: &Lanes| {
-            let many = finder.as_mut().and_then(|finder| finder.edges(&outline.slicer.raised(xi)));
-            many.filter(|edges| outline.slicer.has_one_valley(xi, edges, |xi| self.valley(xi)))
-                .unwrap_or_else(|| {
-                    let one = |xi: f64| {
-                        let valley = self.valley(xi);
-                        let near = outline.slicer.edges_near(xi, valley, extrapolated(&known, xi));
-                        let edges = near.or_else(|| outline.slicer.edges(xi, valley));
-                        let [low, high] = edges.unwrap_or_else(|| [outline.slicer.valley(valley, xi); 2]);
-                        known = [known[1], halved(xi, [low, high])];
-                        [low, high]
-                    };
-                    let both = xi.map(one);
-                    [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
-                })
+            let many = finder.as_mut().and_then(|finder| finder.edges(&slicer.raised(xi)));
+            many.unwrap_or_else(|| {
+                let one = |xi: f64| {
+                    let near = slicer.edges_near(xi, self.lane, extrapolated(&known, xi));
+                    let edges = near.or_else(|| slicer.edges(xi, self.lane));
+                    let [low, high] = edges.unwrap_or_else(|| [slicer.valley(self.lane, xi); 2]);
+                    known = [known[1], halved(xi, [low, high])];
+                    beyond([low, high])
+                };
+                let both = xi.map(one);
+                [both.map(|edges| edges[0]), both.map(|edges| edges[1])]
+            })
         };
         let mut fit = StretchFit { edges, band: self.xi, zero, root, noise };
         for pair in corners.windows(2) {
             fit.add(Interval::new(pair[0], pair[1]), &mut stretches);
         }
         self.stretches = stretches;
+        self.corners = corners;
     }
 
     /// Returns the least and the largest rounding of the square of half the width \[mm²\] that may be expected: the rounding of s times the
     /// square over the depth, both in the middle of the band. s has at least the rounding of ξ and ζ, and off the segments through C up to
     /// that of the profiles' own coordinates. Of samples both are a share of that square.
-    fn noise(&self, outline: &mut Outline<'_>) -> [f64; 2] {
-        let bodies = [outline.slicer.placement().rail(), outline.slicer.placement().wheel()];
+    fn noise(&self, slicer: &mut Slicer<'_>) -> [f64; 2] {
+        let bodies = [slicer.placement().rail(), slicer.placement().wheel()];
         let rail = &bodies[0].section;
         // Over the rail's surface the arc length stands for both coordinates.
-        let height = |xi: f64| if outline.slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
+        let height = |xi: f64| if slicer.is_over_rail() { xi.abs() } else { rail.height(xi).abs() };
         let through_c =
             |body: &Body| self.xi.ends().iter().all(|xi| body.section.on_contact_segment(*xi, 0.0));
         let off = bodies.into_iter().filter(|body| !through_c(body));
         let own = off.map(|body| body.profile().extent()).fold(0.0, f64::max);
         let size = self.xi.map(|xi| height(xi) + xi.abs());
         let middle = self.xi.middle();
-        let valley = self.valley(middle);
-        let depth = outline.slicer.depth_over(valley, middle).abs();
+        let depth = slicer.depth_over(self.lane, middle).abs();
         let square: f64 =
-            outline.slicer.edges(middle, valley).map_or(0.0, |[low, high]| ((high - low) / 2.0).powi(2));
-        if outline.slicer.by_samples.is_some() {
+            slicer.edges(middle, self.lane).map_or(0.0, |[low, high]| ((high - low) / 2.0).powi(2));
+        if slicer.by_samples.is_some() {
             return [SMOOTH * square; 2];
         }
         let size = nan_max(size.low, size.high);

@@ -1,10 +1,9 @@
 //! Finds the connected components of the patch {s < δ} inside a window, and the closed loops around each.
 
-use super::band::{Band, Turn};
-use super::by_samples;
+use super::band::{Band, ONE_SIDE};
 use super::corners;
 use super::end::End;
-use super::in_valleys::lanes;
+use super::fibres;
 use super::lines::bands;
 use super::lines::joints::PassedJoints;
 use super::loops;
@@ -25,9 +24,6 @@ const POINTS_PER_SIDE: usize = 128;
 
 /// Least number of points on a piece of a loop between two corners.
 const LEAST_POINTS: usize = 2;
-
-/// Number of steps between the slices from which a band's range of η is estimated.
-const REACH_SLICES: usize = 8;
 
 /// One connected component of the patch.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,12 +96,10 @@ impl Patch {
     /// rail, beyond the end of a tilted wheel, and where the patch is found from samples, it may meet it in several, and a component may
     /// have holes.
     ///
-    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. With skew a part is missed
-    /// only between two turns of s along a valley between which the surfaces are parallel to 1e-13 (see the docs on numerics); on a roller,
-    /// only where it is shallower than 1e-12 mm, beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a
-    /// hollow kink of a skewed wheel, where it is shallower than 1e-4 mm.
-    ///
-    /// Without skew on a rail, what lies beyond an end of the wheel that is in the rail by more than δ is left out: there the bodies overlap.
+    /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. A part is missed only where it is
+    /// shallower than 1e-12 mm; of several slices of a line on a rail where it is shallower than 1e-8 mm and narrower than 1e-6 R along ξ; and on
+    /// a roller beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a hollow kink of a skewed wheel, where it
+    /// is shallower than 1e-4 mm.
     ///
     /// The patch is found from samples where a body varies, and on a roller where a hollow kink gives the lines two lowest places that may
     /// differ by more than that, or where lines leave a tilted body over its end within the patch and enter it again.
@@ -180,25 +174,20 @@ impl Patch {
 /// The bands of one component, before it is measured.
 struct BandGroup {
     bands: Vec<Band>,
-    /// Places at which s may be least.
-    turns: Vec<Turn>,
 }
 
 /// Collects the bands of the patch into components, by ascending ξ.
 fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
-    let placement = outline.slicer.placement();
-    let (mut bands, turns) = if let Some(by_samples) = &mut outline.slicer.by_samples {
-        by_samples::bands(by_samples, placement, &outline.window)
-    } else {
-        let bands = bands::bands(outline);
-        match bands.filter(|bands| bands.iter().all(|band| outline.slicer.has_one_slice(band.xi))) {
-            Some(bands) => (bands, Vec::new()),
-            None => {
-                outline.slicer.seek_valleys();
-                lanes::bands(outline)
-            }
-        }
+    let (placement, window) = (outline.slicer.placement(), outline.window);
+    let (mut bands, lanes) = match &mut outline.slicer.by_samples {
+        Some(by_samples) => (Vec::new(), fibres::bands(by_samples, placement, &window)),
+        None => bands::bands(outline),
     };
+    for (number, (mut band, lane)) in lanes.into_iter().enumerate() {
+        band.lane = Some(number);
+        bands.push(band);
+        outline.slicer.lanes.push(lane);
+    }
     bands.sort_by(|a, b| a.xi.low.total_cmp(&b.xi.low));
     let meeting: Vec<[usize; 2]> = (0..bands.len())
         .flat_map(|i| (0..bands.len()).map(move |j| [i, j]))
@@ -208,6 +197,14 @@ fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
     let mut first: Vec<usize> = (0..bands.len()).collect();
     for [i, j] in meeting {
         (bands[i].ends[1], bands[j].ends[0]) = (None, None);
+        let ended = bands[i].sides[1];
+        // Both found these edges, each in its own way.
+        for branch in 0..2 {
+            let begun = &mut bands[j].sides[0][branch];
+            if (*begun - ended[branch]).abs() <= ONE_SIDE * ended.width() {
+                *begun = ended[branch];
+            }
+        }
         let (kept, joined) = (first[i].min(first[j]), first[i].max(first[j]));
         first.iter_mut().filter(|k| **k == joined).for_each(|k| *k = kept);
     }
@@ -218,7 +215,7 @@ fn regions(outline: &mut Outline<'_>) -> Vec<BandGroup> {
             Some(place) => regions[place].bands.push(band),
             None => {
                 heads.push(head);
-                regions.push(BandGroup { bands: vec![band], turns: turns.clone() });
+                regions.push(BandGroup { bands: vec![band] });
             }
         }
     }
@@ -241,10 +238,8 @@ impl BandGroup {
     }
 
     fn component(mut self, outline: &mut Outline<'_>) -> Component {
-        // Without valleys the slices do not say more about the least s.
-        let known = (outline.slicer.in_valleys.is_none() && outline.slicer.by_samples.is_none())
-            .then(|| self.deepest(outline, &[]));
-        let rows = self.rows(outline, known.map(|known| known[0]));
+        let deepest = self.deepest(outline);
+        let rows = self.rows(outline, deepest[0]);
         let (xi, eta, ends) = (self.xi(), across(&rows), self.ends());
         let window = outline.window.eta;
         let at_window = |row: &[f64; 3]| row[1] == window.low || row[2] == window.high;
@@ -262,7 +257,6 @@ impl BandGroup {
         }
         let mut corners: Vec<f64> = self.bands.iter().flat_map(|band| &band.corners).copied().collect();
         sort(&mut corners);
-        let deepest = known.unwrap_or_else(|| self.deepest(outline, &rows));
         Component {
             xi,
             ends,
@@ -279,31 +273,24 @@ impl BandGroup {
     }
 
     /// Finds the corners of every band, and its slices at the points of the loops. These are every corner, the ξ between
-    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\],
-    /// `None` if it is not known yet.
-    fn rows(&mut self, outline: &mut Outline<'_>, least: Option<f64>) -> Vec<Rows> {
-        let sampled = outline.slicer.by_samples.is_some();
+    /// two corners (they crowd towards round ends), and the ξ where each branch is farthest out in η. `least` is the least s \[mm\].
+    fn rows(&mut self, outline: &mut Outline<'_>, least: f64) -> Vec<Rows> {
+        let slicer = &mut outline.slicer;
+        let depth = slicer.approach() - least;
         for band in &mut self.bands {
-            band.corners = band.xi.ends().into_iter().chain(outline.slicer.joints(band.xi)).collect();
+            band.corners.extend(band.xi.ends().into_iter().chain(slicer.joints(band.xi)));
             let mut more = Vec::new();
-            let over_rail = outline.slicer.is_over_rail();
-            let on_crown = outline.slicer.is_on_roller() && over_rail;
-            let depth = least.map_or(f64::NAN, |least| outline.slicer.approach() - least);
-            match outline.slicer.lines().filter(|_| !on_crown) {
-                Some(lines) => PassedJoints { lines }.within(band.xi, depth, &mut more),
-                None if sampled => {}
-                None if over_rail => {
-                    corners::over_joints(&mut outline.slicer, band, &mut more);
-                }
-                None => {
-                    let eta = reach(outline, band);
-                    corners::on_circles(outline, band, eta, &mut more);
-                }
+            let on_crown = slicer.is_on_roller() && slicer.is_over_rail();
+            if let Some(lines) = slicer.lines.as_mut().filter(|_| !on_crown) {
+                PassedJoints { lines }.within(band.xi, depth, &mut more);
+            }
+            if slicer.lines.is_some() && (on_crown || band.lane.is_some()) {
+                corners::over_joints(slicer, band, &mut more);
             }
             band.corners.append(&mut more);
             sort(&mut band.corners);
-            band.fit(outline);
-            if sampled {
+            band.fit(slicer);
+            if band.lane.is_some() {
                 // Its interpolants are smooth between their own ends only.
                 band.corners.extend(band.stretches.iter().map(|stretch| stretch.xi.high));
                 sort(&mut band.corners);
@@ -323,7 +310,7 @@ impl BandGroup {
                 sort(&mut band.corners);
                 rows.sort_by(|p, q| p[0].total_cmp(&q[0]));
             }
-            let mirrored = outline.slicer.is_mirrored(band.valley(band.xi.low));
+            let mirrored = outline.slicer.is_mirrored(band.lane);
             add_farthest(band, mirrored, &mut rows);
             rows.dedup_by_key(|row| row[0]);
             all.push(rows);
@@ -331,43 +318,29 @@ impl BandGroup {
         all
     }
 
-    /// Returns \[s, ξ, η\] of the smallest s. The candidates are C, the ends of the bands, and the places where s turns along the valleys
-    /// of the component and is not known to be larger; if the window cuts a valley off, also the points of the loops.
-    fn deepest(&self, outline: &mut Outline<'_>, rows: &[Rows]) -> [f64; 3] {
-        let mut least = [f64::NAN, self.xi().low, 0.0];
-        let take = |least: &mut [f64; 3], found: [f64; 3]| {
-            if found[0] < least[0] || least[0].is_nan() {
-                *least = found;
-            }
-        };
-        for (k, band) in self.bands.iter().enumerate() {
-            let holds = |xi: f64| band.xi.contains(xi);
-            let mut places = Vec::new();
-            // C is the first candidate, so that it is chosen if s is 0 at several because ξ² underflows.
-            places.extend(holds(0.0).then_some(0.0));
-            places.extend(band.xi.ends());
-            let window = outline.window.eta;
-            places.extend(outline.slicer.least_of_all(band.xi, window));
-            let cut = window.ends().into_iter().any(f64::is_finite) && !band.valleys.is_empty();
-            places.extend(rows.get(k).into_iter().flatten().filter(|_| cut).map(|row| row[0]));
-            for xi in places {
-                for &valley in band.valleys_at(xi) {
-                    take(&mut least, outline.lowest(Some(valley), xi));
+    /// Returns \[s, ξ, η\] of the smallest s. C is the first candidate, so that it is chosen if s is 0 at several because ξ² underflows.
+    fn deepest(&self, outline: &mut Outline<'_>) -> [f64; 3] {
+        let mut found = Vec::new();
+        for band in &self.bands {
+            let at_c = band.xi.contains(0.0).then_some(0.0);
+            match band.lane {
+                Some(lane) => {
+                    let holds_c = |edges: [f64; 2]| Interval::from(edges).contains(0.0);
+                    let c = at_c.filter(|xi| outline.edges(band.lane, *xi).is_some_and(holds_c));
+                    found.extend(c.map(|c| [outline.slicer.separation(c, c), c, c]));
+                    found.extend(outline.slicer.least_of(lane));
                 }
-                if band.valleys.is_empty() {
-                    take(&mut least, outline.lowest(None, xi));
-                }
-            }
-            for &Turn { valley, xi, depth } in self.turns.iter().filter(|turn| holds(turn.xi)) {
-                let in_band = valley.is_none_or(|valley| band.valleys_at(xi).contains(&valley));
-                // NaN is not larger.
-                let larger = depth + outline.slicer.approach() > least[0];
-                if in_band && !larger {
-                    take(&mut least, outline.lowest(valley, xi));
+                None => {
+                    let least = outline.slicer.least_of_all(band.xi, outline.window.eta);
+                    let places = at_c.into_iter().chain(band.xi.ends()).chain(least);
+                    found.extend(places.map(|xi| outline.lowest(xi)));
                 }
             }
         }
-        least
+        let lower = |least: [f64; 3], next: [f64; 3]| {
+            if next[0] < least[0] || least[0].is_nan() { next } else { least }
+        };
+        found.into_iter().fold([f64::NAN, self.xi().low, 0.0], lower)
     }
 }
 
@@ -375,19 +348,6 @@ impl BandGroup {
 fn row(band: &Band, xi: f64) -> [f64; 3] {
     let [low, high] = band.slice(xi).eta.ends();
     [xi, low, high]
-}
-
-/// Returns a range of η that holds a band, or nearly: twice that of some slices.
-fn reach(outline: &mut Outline<'_>, band: &Band) -> Interval {
-    let grading = band.grading();
-    let mut range = Interval::NONE;
-    for k in 0..=REACH_SLICES {
-        let xi = band.xi.nearest(grading.xi(k as f64 / REACH_SLICES as f64));
-        for edge in outline.slicer.edges(xi, band.valley(xi)).into_iter().flatten() {
-            range = range.with(edge);
-        }
-    }
-    range.grown(range.width() / 2.0)
 }
 
 /// Adds the rows at which a branch turns and is farthest out in η.

@@ -1,78 +1,14 @@
 //! Finds where the boundary of a patch may have a corner, and where it turns back in η.
 
 use super::band::{Band, ONE_CORNER, extrapolated, halved};
-use super::in_valleys::slicer::InValleys;
 use super::lines::sections;
 use super::loops::Rows;
-use super::outline::Outline;
 use super::slice::Slicer;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, change, last_where};
 
-/// Number of intervals of a circle in which a root of s = δ is sought. Two roots within one interval are missed.
-const CIRCLE_INTERVALS: usize = 8;
-
 /// Number of steps along a band between which an edge is followed from joint to joint.
 const JOINT_PLACES: usize = 32;
-
-/// Appends the ξ inside a band where s = δ on the circle of a joint or end of a skewed wheel. `eta` is the
-/// range of η of the band.
-pub(super) fn on_circles(outline: &Outline<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
-    let Some(in_valleys) = &outline.slicer.in_valleys else { return };
-    let (approach, rail) = (outline.slicer.approach(), &outline.slicer.placement().rail().section);
-    in_valleys.valleys.visit_joints((band.xi, eta), |place, range| {
-        let depth = |xi: f64, height: f64| height - rail.height(xi) - approach;
-        let roots = roots_on_circle(place, range, depth).into_iter();
-        corners.extend(roots.filter(|&xi| band.xi.surrounds(xi)));
-    });
-}
-
-/// Appends the σ inside a band where the circle of an end or step of the wheel's surface passes the raised curve of the rail's surface.
-/// `eta` is the range of η of the band.
-fn on_rims(slicer: &Slicer<'_>, band: &Band, eta: Interval, corners: &mut Vec<f64>) {
-    let Some(InValleys { valleys, raised, .. }) = &slicer.in_valleys else { return };
-    let Some(reach) = raised.reach() else { return };
-    let over = Interval::around(band.xi.ends().map(|sigma| raised.xi(sigma)));
-    let sigma = |xi: f64| raised.sigmas(xi, reach).first().copied().unwrap_or(f64::NAN);
-    valleys.visit_rims((over, eta), |place, range| {
-        let depth = |xi: f64, height: f64| {
-            let at = raised.at(sigma(xi));
-            height - raised.rail().height(at.foot) - at.moved[1]
-        };
-        let roots = roots_on_circle(place, range, depth).into_iter().map(sigma);
-        corners.extend(roots.filter(|&sigma| band.xi.surrounds(sigma)));
-    });
-}
-
-/// Returns ξ of the places on a circle, between both ends of a range of t, where the depth at its \[ξ, ζ\] is 0.
-fn roots_on_circle(
-    place: &dyn Fn(f64) -> [f64; 2],
-    [from, to]: [f64; 2],
-    mut depth: impl FnMut(f64, f64) -> f64,
-) -> Vec<f64> {
-    let mut depth = |t: f64| {
-        let [xi, height] = place(t);
-        depth(xi, height)
-    };
-    let at = |k: usize| from + (to - from) * k as f64 / CIRCLE_INTERVALS as f64;
-    let mut roots = Vec::new();
-    let mut before = depth(from);
-    for k in 1..=CIRCLE_INTERVALS {
-        let here = depth(at(k));
-        let (mut ends, mut depths) = ([at(k - 1), at(k)], [before, here]);
-        // Beside the rail there is no depth.
-        if before.is_nan() != here.is_nan() {
-            let off = usize::from(here.is_nan());
-            ends[off] = last_where(|t| !depth(t).is_nan(), ends[1 - off], ends[off]);
-            depths[off] = depth(ends[off]);
-        }
-        if depths[0] * depths[1] < 0.0 {
-            roots.extend(bracketed(&mut depth, ends[0], ends[1]).map(|t| place(t)[0]));
-        }
-        before = here;
-    }
-    roots
-}
 
 /// Appends the ξ or σ inside a band at which an edge passes a joint of the wheel or of a roller, on a roller and over the rail's
 /// surface.
@@ -83,7 +19,6 @@ fn roots_on_circle(
 pub(super) fn over_joints(slicer: &mut Slicer<'_>, band: &Band, corners: &mut Vec<f64>) {
     let grading = band.grading();
     let mut trail = JointTrail { slicer, band, known: [[f64::NAN; 3]; 2] };
-    let mut eta = Interval::NONE;
     let mut before = trail.feet(band.xi.low);
     for k in 1..=JOINT_PLACES {
         let xi = if k == JOINT_PLACES { band.xi.high } else { grading.xi(k as f64 / JOINT_PLACES as f64) };
@@ -91,10 +26,8 @@ pub(super) fn over_joints(slicer: &mut Slicer<'_>, band: &Band, corners: &mut Ve
         if let (Some(before), Some(here)) = (&before, &here) {
             trail.between([before, here], ONE_CORNER * band.xi.width(), corners);
         }
-        eta = here.iter().flat_map(|here| here.edges).fold(eta, Interval::with);
         before = here;
     }
-    on_rims(slicer, band, eta.grown(eta.width() / 2.0), corners);
     corners.retain(|xi| band.xi.surrounds(*xi));
 }
 
@@ -119,7 +52,7 @@ struct JointTrail<'t, 'a> {
 impl JointTrail<'_, '_> {
     /// Finds the edges at ξ and the profiles' points under them; `None` outside the patch.
     fn feet(&mut self, xi: f64) -> Option<EdgeFeet> {
-        let valley = self.band.valley(xi);
+        let valley = self.band.lane;
         let near = self.slicer.edges_near(xi, valley, extrapolated(&self.known, xi));
         let edges = near.or_else(|| self.slicer.edges(xi, valley))?;
         self.known = [self.known[1], halved(xi, edges)];
@@ -129,7 +62,7 @@ impl JointTrail<'_, '_> {
 
     /// Appends the ξ between two places, to within `enough` \[mm\], at which an edge passes a joint.
     fn between(&mut self, ends: [&EdgeFeet; 2], enough: f64, corners: &mut Vec<f64>) {
-        let mirrored = self.slicer.is_mirrored(self.band.valley(ends[0].xi));
+        let mirrored = self.slicer.is_mirrored(self.band.lane);
         let sides = if mirrored { 1..2 } else { 0..2 };
         self.known = ends.map(|end| halved(end.xi, end.edges));
         for (side, body) in sides.flat_map(|side| [(side, 0), (side, 1)]) {
@@ -150,7 +83,7 @@ impl JointTrail<'_, '_> {
     /// Returns the abscissa \[mm\] of the point of one body under one edge at ξ; NaN where there is none.
     fn abscissa(&mut self, xi: f64, side: usize, body: usize) -> f64 {
         let near = self.slicer.edge_near(xi, extrapolated(&self.known, xi), side);
-        let edge = near.or_else(|| Some(self.slicer.edges(xi, self.band.valley(xi))?[side]));
+        let edge = near.or_else(|| Some(self.slicer.edges(xi, self.band.lane)?[side]));
         edge.map_or(f64::NAN, |eta| self.slicer.abscissae(xi, eta)[body])
     }
 }

@@ -1,6 +1,6 @@
-//! Tells where a line of constant ξ may meet a patch on a roller, or without skew on a rail, in several intervals of η.
+//! Tells where a line of constant ξ may meet a patch on a roller in several intervals of η.
 
-use super::in_valleys::circle::Turned;
+use super::lines::rims::Rims;
 use crate::placement::{Body, Placement};
 
 /// Largest height \[mm\] of the lowest place that is found by roots over another one of its line. Samples would find both, but miss parts that
@@ -44,40 +44,10 @@ fn has_hollow_kink(placement: &Placement, approach: f64) -> bool {
 fn has_hollow_end(placement: &Placement, under: &Placement, approach: f64) -> bool {
     let facing = [(placement, placement.rail(), -1.0), (under, placement.wheel(), 1.0)];
     facing.into_iter().any(|(body, other, sign)| {
-        let turned = Turned::new(body);
-        let gap = |end: usize| {
-            turned.touched(end).map(|(place, height)| height + sign * other.section.height(place.xi))
-        };
-        (0..2).any(|end| turned.is_hollow(end) && gap(end).is_some_and(|gap| gap < approach))
-    })
-}
-
-/// Returns whether lines of constant ξ may leave a wheel without skew on a rail over an end or step of its profile, and meet the patch at
-/// approach δ \[mm\] where they enter it again. An end that lies in the rail by more than δ does not count.
-///
-/// Method: the circle of a profile point lies on a straight line of ξ and ζ, which is compared with the highest point of every piece of the
-/// rail.
-pub(super) fn lines_reenter(placement: &Placement, approach: f64) -> bool {
-    let (turned, rail) = (Turned::new(placement), &placement.rail().section);
-    let wheel = turned.section;
-    // Where the bodies meet upright, none of the wheel faces the rail along their normal.
-    let Some(last) = wheel.pieces.len().checked_sub(1) else { return false };
-    let rise = turned.tilt.re / turned.tilt.im.abs();
-    let meets_rail = |end: usize, index: usize| {
-        let (piece, outward) = (&wheel.pieces[index], [-1.0, 1.0][end]);
-        let overlap = rail.height(piece.xi[end]) - piece.heights[end];
-        if overlap > approach {
-            return false;
-        }
-        rail.pieces.iter().any(|below| {
-            let away = below.xi.map(|xi| (xi - piece.xi[end]) * outward);
-            let lowest = piece.heights[end] + away.low.min(away.high).max(0.0) * rise;
-            let highest = || rail.branches[below.branch].height_bounds(below.xi).high;
-            away.low.max(away.high) > 0.0 && lowest - highest() < approach
+        let rims = Rims::new(body);
+        (0..2).filter(|&end| rims.is_hollow(end)).any(|end| {
+            rims.touched(end)
+                .is_some_and(|[xi, _, height]| height + sign * other.section.height(xi) < approach)
         })
-    };
-    let mut begins = std::iter::once(0).chain(wheel.steps.iter().copied());
-    let mut ends = wheel.steps.iter().map(|next| next - 1).chain([last]);
-    (turned.is_hollow(0) && begins.any(|k| meets_rail(0, k)))
-        || (turned.is_hollow(1) && ends.any(|k| meets_rail(1, k)))
+    })
 }

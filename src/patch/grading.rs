@@ -29,15 +29,18 @@ impl Grading {
         let [sin, cos]: [Lanes<N>; 2] = sines_cosines(&lanes(|k| FRAC_PI_4 * t[k]));
         // Sine and cosine of π t/2.
         let twice = |k: usize| [2.0 * sin[k] * cos[k], (cos[k] - sin[k]) * (cos[k] + sin[k])];
-        let (from, length) = (self.xi.low, self.xi.width());
+        let length = self.xi.width();
+        // From the nearer end, so that no digits of the distance from there are lost.
         let xi = lanes(|k| {
-            let share = match self.round {
-                [true, true] => twice(k)[0] * twice(k)[0],
-                [true, false] => 2.0 * sin[k] * sin[k],
-                [false, true] => twice(k)[0],
-                [false, false] => t[k],
+            let [s, c] = twice(k);
+            let [from_low, from_high] = match self.round {
+                [true, true] => [s * s, c * c],
+                [true, false] => [2.0 * sin[k] * sin[k], c],
+                [false, true] => [s, (cos[k] - sin[k]) * (cos[k] - sin[k])],
+                [false, false] => [t[k], 1.0 - t[k]],
             };
-            from + length * share
+            let (low, high) = (self.xi.low + length * from_low, self.xi.high - length * from_high);
+            if from_low < from_high { low } else { high }
         });
         let rate = lanes(|k| {
             length

@@ -1,11 +1,13 @@
 //! The gap of which one level bounds a patch: over the tangent plane or over the rail's own surface.
 
-use super::in_valleys::slicer::STEP_ROUNDINGS;
 use crate::conformal::{GapColumn, NormalGap, RailPoint, Reference};
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
 use crate::profile::Section;
 use crate::separation::{Evaluator, GapSlopes};
+
+/// Least step of a profile, in roundings of its size. A smaller one is a smooth joint whose two sides round differently.
+const STEP_ROUNDINGS: f64 = 64.0;
 
 /// The gap whose level δ bounds the patch.
 #[derive(Debug)]
@@ -47,14 +49,6 @@ impl<'a> Level<'a> {
             Self::Rail { gap, approach, column } => known(gap, column, xi)
                 .map_or(f64::NAN, |column| gap.gap_in(column, eta) + *approach * versine(&column.rail)),
         }
-    }
-
-    /// Returns ξ \[mm\] of the wheel's point that the rail's normal meets; `None` over the tangent plane, and where it misses the wheel.
-    pub(super) fn met_by_normal(&mut self, sigma: f64, eta: f64) -> Option<f64> {
-        let Self::Rail { gap, column, .. } = self else { return None };
-        let column = known(gap, column, sigma)?;
-        let (t, rail) = (gap.gap_in(column, eta), column.rail);
-        Some(rail.xi - t * rail.sin).filter(|xi| !xi.is_nan())
     }
 
     /// Returns the gap, its slopes along ξ and η, and the abscissae of the profiles' points. Where a body has no surface the result is

@@ -2,20 +2,14 @@
 //! the rail's own surface by δ cos α along its normal. A line of constant ξ or σ is straight and runs along η through the raised point,
 //! and the patch is where that line lies in the wheel.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::Cell;
 
 use crate::conformal::{RailArcLength, RailPoint};
-use crate::numerics::direction;
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::{Lanes, MANY, lanes};
-use crate::numerics::roots::bracketed;
-use crate::numerics::sign_changes::sign_changes;
 use crate::placement::Placement;
 use crate::profile::Section;
 use crate::separation::{Relief, ReliefPoint};
-
-/// Rounding of the direction of the raised curve.
-const DIRECTION_NOISE: f64 = 1e-13;
 
 /// Largest kink \[rad\] of the rail over which the raised curve counts as continuous: there it jumps by at most a millionth of δ.
 const KINK: f64 = 1e-6;
@@ -30,8 +24,6 @@ pub(super) struct Raised<'a> {
     pub(super) surface: Option<RailArcLength<'a>>,
     /// The last point that was asked for.
     last: Cell<RaisedPoint>,
-    /// The pieces over the rail's surface, once they are asked for.
-    pieces: OnceCell<Vec<RaisedPiece>>,
 }
 
 /// A point of the rail's profile and how far it is raised.
@@ -75,22 +67,11 @@ impl<const N: usize> RaisedLanes<N> {
     }
 }
 
-/// The raised curve over one piece of the rail.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RaisedPiece {
-    /// Range of σ \[mm\].
-    pub(super) sigma: Interval,
-    /// Bounds of ξ and ζ \[mm\].
-    pub(super) bounds: [Interval; 2],
-    /// Bounds of dξ/dσ and dζ/dσ.
-    pub(super) direction: [Interval; 2],
-}
-
 impl<'a> Raised<'a> {
     /// Makes the raised profile of a placed pair for approach δ \[mm\], over the tangent plane or over the rail's `surface`.
     pub(super) fn new(placement: &'a Placement, approach: f64, surface: Option<RailArcLength<'a>>) -> Self {
         let last = Cell::new(RaisedPoint { sigma: f64::NAN, foot: f64::NAN, moved: [f64::NAN; 2] });
-        Self { relief: Relief::new(placement), approach, surface, last, pieces: OnceCell::new() }
+        Self { relief: Relief::new(placement), approach, surface, last }
     }
 
     /// Returns the rail's section.
@@ -166,12 +147,6 @@ impl<'a> Raised<'a> {
         self.over_profile(sigma, eta) - self.at(sigma).moved[1]
     }
 
-    /// Computes the gap \[mm\] and its slope along η; `None` off the wheel.
-    pub(super) fn gap_and_slope(&mut self, sigma: f64, eta: f64) -> Option<[f64; 2]> {
-        let (at, point) = self.point(sigma, eta)?;
-        Some([self.height(&at, &point) - at.moved[1], self.relief.slopes(&point)[1]])
-    }
-
     /// Computes the gap \[mm\] and its slopes along σ and η; `None` off the wheel.
     pub(super) fn gap_and_slopes(&mut self, sigma: f64, eta: f64) -> Option<[f64; 3]> {
         let (at, point) = self.point(sigma, eta)?;
@@ -189,43 +164,6 @@ impl<'a> Raised<'a> {
         self.surface.as_ref().map_or_else(|| self.rail().reach(), RailArcLength::reach)
     }
 
-    /// Returns the pieces of the raised curve over the rail's surface inside a range of σ \[mm\]; none over the tangent plane.
-    pub(super) fn pieces(&self, over: Interval) -> impl Iterator<Item = RaisedPiece> {
-        let stretches = || self.surface.iter().flat_map(RailArcLength::pieces);
-        let all =
-            self.pieces.get_or_init(|| stretches().map(|(sigma, piece)| self.piece(sigma, piece)).collect());
-        let inside = all.iter().map(move |piece| RaisedPiece { sigma: piece.sigma.cut(over), ..*piece });
-        inside.filter(|piece| piece.sigma.has_width())
-    }
-
-    /// Bounds the raised curve over a piece of the rail, which is over a range of σ \[mm\].
-    fn piece(&self, sigma: Interval, index: usize) -> RaisedPiece {
-        let (rail, approach) = (self.rail(), self.approach);
-        let piece = &rail.pieces[index];
-        let branch = &rail.branches[piece.branch];
-        let (slopes, [_, seconds]) = (rail.slopes(index), branch.derivative_bounds(piece.xi));
-        // Between its ends a curve leaves its chord by no more than ζ″ l²/8.
-        let bulge = seconds.magnitude() * piece.xi.width().powi(2) / 8.0;
-        let heights = Interval::between(piece.heights[0], piece.heights[1]).grown(bulge);
-        let bounds = [piece.xi.grown(approach.abs() / 2.0), heights.hull(heights + approach)];
-        // These bounds hold for all curves along which t + δ (1 − cos α) is constant and |t| at most δ; the raised curve is one of them.
-        let turned = 2.0 * approach.abs() * branch.curvature_bounds(piece.xi).magnitude();
-        let cosines = Interval::new(direction(slopes.magnitude())[0], direction(slopes.nearest(0.0))[0]);
-        let sines = slopes.map(|slope| direction(slope)[1]);
-        RaisedPiece { sigma, bounds, direction: [cosines.grown(turned), sines.grown(turned)] }
-    }
-
-    /// Returns the parts of a piece over which ξ of the raised curve only grows or only falls.
-    pub(super) fn runs(&self, piece: &RaisedPiece) -> Vec<Interval> {
-        if piece.direction[0].low > 0.0 {
-            return vec![piece.sigma];
-        }
-        let mut turns = Vec::new();
-        let run = |sigma: &Lanes| sigma.map(|sigma| self.direction(sigma)[0]);
-        sign_changes(run, piece.sigma, DIRECTION_NOISE, &mut turns);
-        piece.sigma.parts(turns).collect()
-    }
-
     /// Returns the σ inside a range \[mm\], ascending, at which the raised curve jumps: at kinks of the rail, where its normal turns at
     /// once.
     pub(super) fn jumps(&self, over: Interval) -> Vec<f64> {
@@ -236,31 +174,6 @@ impl<'a> Raised<'a> {
         };
         joints.into_iter().filter(|sigma| over.surrounds(*sigma) && leaps(*sigma)).collect()
     }
-
-    /// Returns the part of a run whose ξ lie in an interval \[mm\]; `None` if there is none.
-    pub(super) fn over(&self, run: Interval, xi: Interval) -> Option<Interval> {
-        let [a, b] = run.ends().map(|sigma| self.xi(sigma));
-        if !Interval::between(a, b).meets(xi) {
-            return None;
-        }
-        let at = |bound: f64| bracketed(|sigma| self.xi(sigma) - bound, run.low, run.high);
-        let [low, high] = xi.ends().map(at);
-        let (first, last) = if a <= b { (low, high) } else { (high, low) };
-        let inside = |end: f64| xi.contains(end);
-        let low = if inside(a) { Some(run.low) } else { first };
-        let high = if inside(b) { Some(run.high) } else { last };
-        Some(Interval::new(low?, high?)).filter(|over| over.has_width())
-    }
-
-    /// Returns the σ inside a range at which the raised curve stands at ξ \[mm\].
-    pub(super) fn sigmas(&self, xi: f64, over: Interval) -> Vec<f64> {
-        if self.surface.is_none() {
-            return vec![xi];
-        }
-        let pieces = self.pieces(over).filter(|piece| piece.bounds[0].contains(xi));
-        let runs = pieces.flat_map(|piece| self.runs(&piece));
-        runs.filter_map(|run| bracketed(|sigma| self.xi(sigma) - xi, run.low, run.high)).collect()
-    }
 }
 
 #[cfg(test)]
@@ -268,6 +181,7 @@ mod tests {
     use super::*;
     use crate::conformal::{NormalGap, corner_in_root};
     use crate::error::Result;
+    use crate::numerics::roots::bracketed;
 
     #[test]
     fn the_raised_point_is_on_the_wheel_where_the_normal_gap_is_the_approach_and_slopes_are_those_of_differences()

@@ -3,11 +3,13 @@
 //! Without skew the wheel must rise by δ − g(ξ). This gives the sagitta e, and η = ±√(e(2w + e)) takes the place of
 //! (7.2)–(7.3). It is exact at the tips, where (7.3) cancels.
 
-use super::by_samples::BySamples;
-use super::divided::lines_reenter;
-use super::in_valleys::slicer::{InValleys, NEAR_GUESS, newton_from, on_surface};
+use super::fibres::{BySamples, Lane, LineSlice};
 use super::level::{Level, joints};
 use super::lines::Lines;
+use super::lines::lanes::{edges_of, line};
+use super::lines::least::{least_of, lowest_of, lowest_of_line, lowest_within};
+use super::lines::newton::{NEAR_GUESS, newton_from};
+use super::lines::open::have_one_slice;
 use super::lines::ranges::LeastGap;
 use super::raised::RaisedLanes;
 use crate::conformal::Reference;
@@ -20,9 +22,6 @@ use crate::separation::{Evaluator, midplane_gap};
 
 /// Most contractions of the sagitta step; each gains at least three digits away from vertical tangents.
 const CONTRACTIONS: usize = 24;
-
-/// Steps to the place of the least t on a valley. Each makes the error of t, which is as the square of that of η, a millionth.
-const TO_NEAREST: usize = 2;
 
 /// The interval of η of the patch at one ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,63 +51,47 @@ pub struct Slicer<'a> {
     wheel: WheelSurface<'a>,
     pub(super) evaluator: Evaluator<'a>,
     spans: Vec<Span>,
-    /// The lines of swept bodies that fall to one lowest place; `None` where a body varies.
-    lines: Option<Lines<'a>>,
+    /// The lines of swept bodies; `None` where a body varies.
+    pub(super) lines: Option<Lines<'a>>,
     /// Those of the normal gap over the rail's surface; otherwise `None`.
     normal: Option<Lines<'a>>,
-    /// The slices of swept bodies on a rail of which a line may meet several; otherwise `None`.
-    pub(super) in_valleys: Option<InValleys<'a>>,
     /// The slices that are found from samples; otherwise `None`.
     pub(super) by_samples: Option<BySamples<'a>>,
+    /// The slices of bands from single lines.
+    pub(super) lanes: Vec<Lane>,
+    /// Range of η of the window \[mm\].
+    window: Interval,
     approach: f64,
 }
 
 impl<'a> Slicer<'a> {
     /// Makes a slicer for approach δ \[mm\].
     pub fn new(placement: &'a Placement, approach: f64) -> Self {
-        let mut slicer = Self::over(placement, approach, Reference::Plane);
-        if placement.skew() != 0.0 {
-            slicer.seek_valleys();
-        }
-        slicer
+        Self::over(placement, approach, (Reference::Plane, Interval::ALL))
     }
 
-    /// Makes a slicer of the patch over the tangent plane or over the rail's surface, where ξ is σ, and s is t(σ, η) + δ (1 − cos α).
-    pub(super) fn over(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
+    /// Makes a slicer of the patch inside a range of η over the tangent plane or over the rail's surface, where ξ is σ, and s is
+    /// t(σ, η) + δ (1 − cos α).
+    pub(super) fn over(
+        placement: &'a Placement,
+        approach: f64,
+        (reference, window): (Reference, Interval),
+    ) -> Self {
         let sampled = BySamples::apply_to(placement, approach);
-        let on_rail = !sampled && placement.under().is_none();
-        let normal = on_rail && reference == Reference::Rail;
+        let normal = !sampled && placement.under().is_none() && reference == Reference::Rail;
         let level = || Level::new(placement, approach, reference);
-        let mut slicer = Self {
+        Self {
             placement,
             wheel: WheelSurface::new(placement),
             evaluator: Evaluator::new(placement),
             spans: Vec::new(),
             lines: (!sampled).then(|| Lines::new(placement, approach, reference)),
             normal: normal.then(|| Lines::along_normals(placement, approach)),
-            in_valleys: None,
             by_samples: sampled.then(|| BySamples::new(placement, approach, level())),
+            lanes: Vec::new(),
+            window,
             approach,
-        };
-        let is_plain = on_rail && reference == Reference::Plane && placement.skew() == 0.0;
-        if is_plain && lines_reenter(placement, approach) {
-            slicer.seek_valleys();
         }
-        slicer
-    }
-
-    /// From here on finds slices from valleys, of which a line may have several; on a rail.
-    pub(super) fn seek_valleys(&mut self) {
-        if let Some(raised) = self.lines.as_ref().and_then(|lines| lines.gap.raised()) {
-            self.in_valleys = Some(InValleys::new(self.placement, self.approach, raised.surface.clone()));
-        }
-    }
-
-    /// Returns whether each line of a range of ξ or σ \[mm\] is known to meet the patch in one interval at most.
-    pub(super) fn has_one_slice(&mut self, over: Interval) -> bool {
-        let is_plain = self.placement.skew() == 0.0 && !self.is_over_rail();
-        let lines = self.lines.as_mut().filter(|lines| !is_plain && lines.gap.raised().is_some());
-        lines.is_none_or(|lines| lines.have_one_slice(over))
     }
 
     /// Returns the gap whose level bounds the patch; `None` where it is s over the tangent plane of swept bodies on a rail.
@@ -122,39 +105,21 @@ impl<'a> Slicer<'a> {
         self.by_samples.as_mut().map(|by_samples| &mut by_samples.level).or(lines)
     }
 
-    /// Returns whether both edges of the slices around a valley mirror each other.
-    pub(super) fn is_mirrored(&self, valley: Option<usize>) -> bool {
-        let in_midplane = match (&self.in_valleys, valley) {
-            (Some(in_valleys), Some(valley)) => in_valleys.valleys.is_mirrored(valley),
-            _ => self.by_samples.is_none(),
-        };
-        self.placement.skew() == 0.0 && in_midplane
+    /// Returns whether both edges of slices mirror each other.
+    pub(super) fn is_mirrored(&self, lane: Option<usize>) -> bool {
+        self.placement.skew() == 0.0 && lane.is_none() && self.by_samples.is_none()
     }
 
-    /// Returns the range of ξ \[mm\] in which both bodies may lie over each other.
-    pub(super) fn reach(&self) -> Option<Interval> {
-        self.lines.as_ref()?.gap.reach()
-    }
-
-    /// Returns the lines that fall to one lowest place; `None` where slices are found from valleys or from samples.
-    pub(super) fn lines(&mut self) -> Option<&mut Lines<'a>> {
-        self.lines.as_mut().filter(|_| self.in_valleys.is_none())
-    }
-
-    /// Returns the gaps of a range of ξ inside one of η \[mm\] whose least on each line bounds the patch; `None` where slices are found
-    /// from valleys or from samples.
+    /// Returns the gaps of a range of ξ inside one of η \[mm\] whose least on each line bounds the patch; `None` where slices are found from
+    /// samples.
     pub(super) fn least_gap(&mut self, over: Interval, window: Interval) -> Option<LeastGap<'_, 'a>> {
-        Some(LeastGap { lines: self.lines()?, over, window })
+        Some(LeastGap { lines: self.lines.as_mut()?, over, window })
     }
 
     /// Returns ξ or σ \[mm\] of the least s of all lines of a range, inside a window of η; `None` as for [`Self::least_gap`].
     pub(super) fn least_of_all(&mut self, over: Interval, window: Interval) -> Option<f64> {
-        if self.in_valleys.is_none()
-            && let Some(lines) = &mut self.normal
-        {
-            return LeastGap { lines, over, window }.least_of_all();
-        }
-        self.least_gap(over, window)?.least_of_all()
+        let lines = self.normal.as_mut().or(self.lines.as_mut())?;
+        LeastGap { lines, over, window }.least_of_all()
     }
 
     /// Returns the ξ inside an interval \[mm\] at which the rail has joints.
@@ -186,23 +151,14 @@ impl<'a> Slicer<'a> {
     /// Returns the minimum over η of s(ξ, η) − δ \[mm\]. It is negative inside the patch, zero at its tips, and NaN off the
     /// bodies. Outside a patch from samples it is s − δ at η = 0.
     pub fn depth(&mut self, xi: f64) -> f64 {
-        if let Some(by_samples) = &mut self.by_samples {
-            let eta = by_samples.lowest(xi, None);
-            return by_samples.separation(xi, eta) - self.approach;
-        }
-        if let Some(in_valleys) = &mut self.in_valleys {
-            return in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.depth(valley, xi));
-        }
         let lowest = self.lowest(xi);
-        self.lines.as_mut().map_or(f64::NAN, |lines| lines.gap.gap(xi, lowest))
+        self.miss(xi, lowest)
     }
 
-    /// Returns s − δ at a valley \[mm\]; without a valley that of the midplane.
-    pub(super) fn depth_over(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        match (&mut self.in_valleys, valley) {
-            (Some(in_valleys), Some(valley)) => in_valleys.depth(valley, xi),
-            _ => self.depth(xi),
-        }
+    /// Returns s − δ at the lowest place of the slice of a lane, or of the line \[mm\].
+    pub(super) fn depth_over(&mut self, lane: Option<usize>, xi: f64) -> f64 {
+        let lowest = self.valley(lane, xi);
+        self.miss(xi, lowest)
     }
 
     /// Returns how far the wheel lies above what bounds the patch at a point \[mm\]: s − δ, or over the rail's surface its height over
@@ -214,57 +170,48 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// Returns the slope of [`Self::miss`] along ξ.
-    pub(super) fn slope_along(&mut self, xi: f64, eta: f64) -> f64 {
-        match &mut self.lines {
-            Some(lines) => lines.gap.at(xi, eta).map_or(f64::NAN, |at| at.along),
-            None => self.gradient(xi, eta)[0],
-        }
-    }
-
     /// Returns the interval of η at ξ, or `None` outside the patch. With skew it is the deepest of several intervals. The
     /// interval has no width at a tip. It ends where the wheel's surface ends along η, if that is before s reaches δ.
     ///
     /// Accuracy: |Δη| ≤ (R/η) × the accuracy of s.
     pub fn slice(&mut self, xi: f64) -> Option<Slice> {
-        let valley = match &mut self.in_valleys {
-            Some(in_valleys) => Some(in_valleys.lowest_valley(xi)?),
-            None => None,
+        let edges = match self.lines.as_mut().filter(|lines| !have_one_slice(lines, Interval::of(xi))) {
+            Some(lines) => {
+                let slices = line(lines, xi, self.window).slices;
+                let depth = |slice: &LineSlice| (lowest_within(lines, xi, slice.eta)[1], slice.eta);
+                let depths: Vec<_> = slices.iter().map(depth).collect();
+                Some(depths.into_iter().min_by(|p, q| p.0.total_cmp(&q.0))?.1.ends())
+            }
+            None => self.edges(xi, None),
         };
-        self.edges(xi, valley).map(|edges| Slice { eta: edges.into() })
+        edges.map(|edges| Slice { eta: edges.into() })
     }
 
-    /// Returns both ends of the slice at ξ; of slices from valleys, of the one that holds `valley`.
-    pub(super) fn edges(&mut self, xi: f64, valley: Option<usize>) -> Option<[f64; 2]> {
+    /// Returns both ends of the slice at ξ; of single lines, of that of a lane.
+    pub(super) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[f64; 2]> {
+        let own = lane.and_then(|lane| self.lanes.get(lane));
         if let Some(by_samples) = &mut self.by_samples {
-            return by_samples.edges(xi, valley);
+            return by_samples.edges(xi, own);
         }
-        let by_formula =
-            self.placement.under().is_none() && self.normal.is_none() && self.is_mirrored(valley);
-        if by_formula {
+        if let (Some(lines), Some(lane)) = (&mut self.lines, own) {
+            return edges_of(lines, xi, lane, self.window);
+        }
+        if self.placement.under().is_none() && self.normal.is_none() && self.is_mirrored(lane) {
             let edge = self.half(xi)?;
             return Some([-edge, edge]);
         }
-        match (&mut self.in_valleys, valley) {
-            (Some(in_valleys), Some(valley)) => in_valleys.edges(xi, valley),
-            _ => self.lines.as_mut()?.edges(xi),
-        }
+        self.lines.as_mut()?.edges(xi)
     }
 
-    /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess; of slices from valleys, of the one that holds `valley`.
-    /// Returns `None` by the formula without skew, from samples, and unless both settle next to the guess, the gap rises outwards there, and
-    /// neither a second valley or ridge nor a step or end of a surface is in the guess or next to it.
-    pub(super) fn edges_near(&mut self, xi: f64, valley: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
-        if let Some(in_valleys) = &self.in_valleys {
-            let around = Interval::from(guess).grown(NEAR_GUESS * (guess[1] - guess[0]));
-            let place = in_valleys.raised.xi(xi);
-            if !in_valleys.valleys.is_alone_within(valley?, place, around) {
-                return None;
-            }
+    /// Returns both ends of the slice at ξ \[mm\] by Newton's steps from a guess. Returns `None` by the formula without skew, of lanes, from
+    /// samples, and unless both settle next to the guess, the gap rises outwards there, and no surface steps in the guess or next to it.
+    pub(super) fn edges_near(&mut self, xi: f64, lane: Option<usize>, guess: [f64; 2]) -> Option<[f64; 2]> {
+        if lane.is_some() {
+            return None;
         }
         let upper = self.edge_near(xi, guess, 1)?;
-        let lower = if self.is_mirrored(valley) { -upper } else { self.edge_near(xi, guess, 0)? };
-        let stepped = self.lines().is_some_and(|lines| lines.may_step(xi, [lower, upper]));
+        let lower = if self.is_mirrored(lane) { -upper } else { self.edge_near(xi, guess, 0)? };
+        let stepped = self.lines.as_mut().is_some_and(|lines| lines.may_step(xi, [lower, upper]));
         (!stepped).then_some([lower, upper])
     }
 
@@ -286,24 +233,6 @@ impl<'a> Slicer<'a> {
     pub(super) fn raised(&self, xi: &Lanes) -> RaisedLanes<MANY> {
         let raised = self.lines.as_ref().and_then(|lines| lines.gap.raised());
         raised.map_or_else(|| RaisedLanes::over_plane(xi, self.approach), |raised| raised.lanes(xi))
-    }
-
-    /// Returns whether s over the tangent plane of a rail rises at every ξ from one lowest place, of slices from valleys that of `valley`,
-    /// up to both edges \[mm\].
-    pub(super) fn has_one_valley(
-        &self,
-        xi: &Lanes,
-        [low, high]: &[Lanes; 2],
-        valley: impl Fn(f64) -> Option<usize>,
-    ) -> bool {
-        self.in_valleys.as_ref().is_none_or(|InValleys { valleys, raised, .. }| {
-            let places = raised.lanes(xi).xi;
-            let alone = |k: usize| {
-                let eta = Interval::new(low[k], high[k]);
-                valley(xi[k]).is_some_and(|valley| valleys.is_alone_within(valley, places[k], eta))
-            };
-            valleys.is_one_between(Interval::around(places)) || (0..MANY).all(alone)
-        })
     }
 
     /// Returns the upper end of the slice at ξ without skew, or `None` outside the patch.
@@ -341,59 +270,46 @@ impl<'a> Slicer<'a> {
         if let Some(by_samples) = &mut self.by_samples {
             return by_samples.lowest(xi, None);
         }
-        match (&mut self.in_valleys, &mut self.lines) {
-            (Some(in_valleys), _) => {
-                in_valleys.lowest_valley(xi).map_or(f64::NAN, |valley| in_valleys.spot(valley, xi).eta)
-            }
-            (None, lines) => lines.as_mut().map_or(f64::NAN, |lines| lines.lowest(xi, 0.0)),
-        }
+        self.lines.as_mut().map_or(f64::NAN, |lines| {
+            let one = have_one_slice(lines, Interval::of(xi));
+            if one { lines.lowest(xi, 0.0) } else { lowest_of_line(lines, xi, self.window) }
+        })
     }
 
-    /// Returns η of a valley at ξ \[mm\]; 0 in the midplane.
-    pub(super) fn valley(&mut self, valley: Option<usize>, xi: f64) -> f64 {
+    /// Returns η \[mm\] of the least gap in the slice of a lane at ξ, or of the line.
+    pub(super) fn valley(&mut self, lane: Option<usize>, xi: f64) -> f64 {
+        let own = lane.and_then(|lane| self.lanes.get(lane));
         if let Some(by_samples) = &mut self.by_samples {
-            return by_samples.lowest(xi, valley);
+            return by_samples.lowest(xi, own);
         }
-        match (self.in_valleys.as_ref().zip(valley), &mut self.lines) {
-            (Some((in_valleys, valley)), _) => in_valleys.spot(valley, xi).eta,
-            (None, lines) => lines.as_mut().map_or(0.0, |lines| lines.lowest(xi, 0.0)),
-        }
-    }
-
-    /// Returns η \[mm\] of the least gap over a valley at ξ; 0 in the midplane.
-    ///
-    /// Method: over the rail's surface the least t lies where the normal meets the valley, which is δ cos α − t below the raised point.
-    pub(super) fn nearest_to_rail(&mut self, valley: Option<usize>, xi: f64) -> f64 {
-        if let (None, Some(lines)) = (&self.in_valleys, &mut self.normal) {
-            return lines.lowest(xi, 0.0);
-        }
-        let mut eta = self.valley(valley, xi);
-        let level = self.normal.as_mut().and_then(|lines| lines.gap.level_mut());
-        if let (Some(in_valleys), Some(level), Some(valley)) = (&self.in_valleys, level, valley) {
-            let steps = if in_valleys.valleys.is_mirrored(valley) { 0 } else { TO_NEAREST };
-            for _ in 0..steps {
-                let Some(met) = level.met_by_normal(xi, eta) else { break };
-                eta = in_valleys.valleys.spot(valley, met).eta;
-            }
-        }
-        eta
-    }
-
-    /// Returns \[s, η\] \[mm\]. If rounding ends the surface too early, it returns a place on the surface next to η.
-    pub(super) fn on_surface(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        if self.in_valleys.is_some() {
-            on_surface(self.placement, eta, |eta| self.separation(xi, eta))
-        } else {
-            [self.separation(xi, eta), eta]
+        let Some(lines) = &mut self.lines else { return 0.0 };
+        match own {
+            Some(lane) => lowest_of(lines, xi, lane, self.window),
+            None => lines.lowest(xi, 0.0),
         }
     }
 
-    /// Returns \[∂s/∂ξ, ∂s/∂η\].
-    pub(super) fn gradient(&mut self, xi: f64, eta: f64) -> [f64; 2] {
-        match self.level_mut() {
-            Some(level) => level.gradient(xi, eta),
-            None => self.evaluator.separation_and_gradient(xi, eta).1,
+    /// Returns η \[mm\] of the least gap on the line of ξ: over the rail's surface of the least t.
+    pub(super) fn nearest_to_rail(&mut self, xi: f64) -> f64 {
+        match &mut self.normal {
+            Some(lines) => lines.lowest(xi, 0.0),
+            None => self.valley(None, xi),
         }
+    }
+
+    /// Returns \[s, ξ, η\] of the least s of a lane within the window.
+    pub(super) fn least_of(&mut self, lane: usize) -> Option<[f64; 3]> {
+        let own = self.lanes.get(lane)?.clone();
+        if let Some(by_samples) = &mut self.by_samples {
+            let xi = by_samples.least(&own)?;
+            let eta = self.window.nearest(by_samples.lowest(xi, Some(&own)));
+            return Some([self.separation(xi, eta), xi, eta]);
+        }
+        let [_, xi, eta] = least_of(self.lines.as_mut()?, &own)?;
+        let over = Interval::new(own.rows.first()?.xi, own.rows.last()?.xi);
+        let lines = self.normal.as_mut().or(self.lines.as_mut())?;
+        let [xi, eta] = LeastGap { lines, over, window: self.window }.least_near([xi, eta]);
+        Some([self.separation(xi, eta), xi, eta])
     }
 
     /// Returns s(ξ, η) \[mm\].

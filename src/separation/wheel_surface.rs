@@ -83,7 +83,8 @@ impl<'a> WheelSurface<'a> {
             // Near the axle's height u may fall along the column. Such a span is empty.
             span.u.high = span.u.high.max(span.u.low);
             let done = span.u.high >= u_max || self.sin == 0.0;
-            if span.u.low <= u_max {
+            // What begins beyond the axle's height is no surface.
+            if span.u.low <= u_max && span.w > 0.0 {
                 spans.push(span);
             }
             match self.next_piece(index) {

@@ -1,242 +1,29 @@
 //! Bounds of the gap and of its slopes over a box of the ξ–η plane, or of the σ–η plane of the rail's surface.
-//!
-//! A surface of revolution whose profile has the slope T in its own axes has, at the angle v about its axle, in the contact frame with the
-//! tilt θ, and with k = T/cos v,
-//!
-//! ```text
-//! a = ∂ζ/∂ξ′ = (k cosθ − sinθ)/(cosθ + k sinθ),   b = ∂ζ/∂η′ = tan v/(cosθ + k sinθ).
-//! ```
-//!
-//! a grows with k. A roller is such a surface upside down.
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::tree::{ProfileBounds, ProfileTree};
+use super::round::{BoxBends, Round, SurfaceSlopes, Torn};
+use super::tree::ProfileTree;
 use crate::conformal::RailArcLength;
 use crate::numerics::direction;
 use crate::numerics::interval::Interval;
-use crate::patch::in_valleys::circle::FARTHEST_SINE;
 use crate::patch::raised::Raised;
 use crate::placement::Placement;
-use crate::separation::wheel_surface::WheelSurface;
 
 /// Fall of the slope at kinks beyond which second derivatives are not asked for: no gap without a radius below 1 mm is convex to 1e-13 mm.
 const MOST_FALL: f64 = 1e-6;
-
-/// Rounding of the places of surfaces, in roundings of the axle distance.
-const PLACE_ROUNDINGS: f64 = 64.0;
 
 /// Bounds of the slopes of a gap over a box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoxSlopes {
     /// Along ξ or σ.
     pub(super) along: Interval,
-    /// Along ξ or σ, where the gap does not slope along η. They are narrow where a kink of the wheel is lowest, too.
+    /// Along ξ or σ, where the gap does not slope along η: as a/cosχ, and as −b/sinχ, which is narrow where a kink of the wheel is lowest.
     pub(super) lowest: Interval,
     /// Along η.
     pub(super) across: Interval,
     /// η \[mm\] of all places in the box at which the gap does not slope along η.
     pub(super) level_at: Interval,
-}
-
-/// Bounds of the slopes of a surface over a box.
-struct SurfaceSlopes {
-    /// Range of ξ \[mm\].
-    xi: Interval,
-    /// a.
-    along: Interval,
-    /// b/η′ \[1/mm\].
-    growth: Interval,
-    /// b.
-    across: Interval,
-}
-
-/// Bounds of the second derivatives of a gap or a surface over a box \[1/mm\].
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BoxBends {
-    /// Along ξ twice.
-    along: Interval,
-    /// Along ξ and η.
-    mixed: Interval,
-    /// Along η twice.
-    across: Interval,
-    /// Sum of all falls of the slope along ξ at kinks.
-    falls: f64,
-}
-
-impl BoxBends {
-    fn plus(&self, other: &Self) -> Self {
-        Self {
-            along: self.along + other.along,
-            mixed: self.mixed + other.mixed,
-            across: self.across + other.across,
-            falls: self.falls + other.falls,
-        }
-    }
-
-    /// Whether the least of a gap over η is proved to be a convex function of ξ, but for kinks that make it `shallow` \[mm\] lower.
-    fn is_bowl(&self, shallow: f64) -> bool {
-        let least = self.along.low - self.mixed.magnitude().powi(2) / self.across.low;
-        self.across.low > 0.0 && least > 0.0 && self.falls.powi(2) <= 2.0 * least * shallow
-    }
-}
-
-/// The points of a profile from which a box of its surface is swept.
-struct SweptBox {
-    abscissae: Interval,
-    slopes: Interval,
-    /// Distances from the axle \[mm\].
-    radii: Interval,
-    /// η′ \[mm\].
-    aside: Interval,
-}
-
-/// Bounds of the slopes of a surface over a box in the body's own axes.
-struct OwnSlopes {
-    /// T.
-    own: Interval,
-    /// k.
-    turned: Interval,
-    /// cosθ + k sinθ.
-    facing: Interval,
-    /// 1/cos v.
-    secant: Interval,
-}
-
-/// A wheel, or a roller upside down.
-#[derive(Debug)]
-struct Round<'a> {
-    surface: WheelSurface<'a>,
-    /// sin χ and cos χ.
-    skew: [f64; 2],
-    tree: ProfileTree<'a>,
-    /// Distances of the profile's points from the axle \[mm\].
-    radii: Interval,
-}
-
-impl<'a> Round<'a> {
-    fn new(placement: &'a Placement) -> Self {
-        let surface = WheelSurface::new(placement);
-        let tree = ProfileTree::new(surface.section);
-        let skew = placement.skew_rotation();
-        let mut round = Self { surface, skew: [skew.im, skew.re], tree, radii: Interval::NONE };
-        let abscissae = surface.section.reach().unwrap_or(Interval::NONE);
-        round.radii = round.radii_of(abscissae, round.tree.heights_around(abscissae));
-        round
-    }
-
-    /// Returns bounds of the distances from the axle \[mm\] of points from ranges of their abscissae and heights \[mm\].
-    fn radii_of(&self, abscissae: Interval, heights: Interval) -> Interval {
-        let WheelSurface { axle, sin, cos, .. } = self.surface;
-        -(abscissae * sin + heights * cos) + axle
-    }
-
-    /// Returns the ranges of ξ′ and η′ \[mm\] of a box of ξ and η.
-    fn turned(&self, xi: Interval, eta: Interval) -> [Interval; 2] {
-        let [sin, cos] = self.skew;
-        [xi * cos + eta * sin, eta * cos + -(xi * sin)]
-    }
-
-    /// Returns the range of η \[mm\], over all ξ of a range, up to which surfaces are looked at.
-    fn within(&self, xi: Interval) -> Interval {
-        let [sin, cos] = self.skew;
-        Interval::symmetric((FARTHEST_SINE * self.radii.low - (xi.magnitude() * sin).abs()) / cos)
-    }
-
-    /// Returns bounds of the abscissae \[mm\] of the points above a box, from bounds of their distances from the axle.
-    fn abscissae(&self, along: Interval, aside: Interval, radii: Interval) -> Interval {
-        let rounding = PLACE_ROUNDINGS * f64::EPSILON * self.surface.axle;
-        (along + -(sagittae(aside, radii) * self.surface.sin)).grown(rounding)
-    }
-
-    /// Returns the profile's points from which the surface over a box is swept; `None` where it ends or steps there, and too far from the
-    /// midplane.
-    fn feet(&self, xi: Interval, eta: Interval) -> Option<SweptBox> {
-        let WheelSurface { sin, cos, .. } = self.surface;
-        let [along, aside] = self.turned(xi, eta);
-        if self.radii.is_empty() || aside.magnitude() > FARTHEST_SINE * self.radii.low {
-            return None;
-        }
-        // The sagittae of all radii of the wheel may be the widest part of the abscissae.
-        let wide = self.abscissae(along, aside, self.radii);
-        let near = self.radii.cut(self.radii_of(wide, self.tree.heights_around(wide)));
-        let abscissae = self.abscissae(along, aside, near);
-        let ProfileBounds { slopes, heights } = self.tree.over(abscissae)?;
-        let radii = near.cut(self.radii_of(abscissae, heights));
-        let upright = cos - sin * slopes.low <= 0.0 || cos - sin * slopes.high <= 0.0;
-        (!upright && slopes.magnitude().is_finite()).then_some(SweptBox { abscissae, slopes, radii, aside })
-    }
-
-    /// Returns bounds of the surface's slopes along ξ′ and η′ over a box; `None` as for [`Self::feet`].
-    fn slopes_over(&self, xi: Interval, eta: Interval) -> Option<SurfaceSlopes> {
-        if self.skew[0] == 0.0 && eta == Interval::of(0.0) {
-            // In the midplane they are those of the profile.
-            let along = self.tree.over(xi)?.slopes;
-            let [growth, across] = [Interval::of(1.0).quotient(self.radii), Interval::of(0.0)];
-            return along.magnitude().is_finite().then_some(SurfaceSlopes { xi, along, growth, across });
-        }
-        let WheelSurface { sin, cos, .. } = self.surface;
-        let swept = self.feet(xi, eta)?;
-        let OwnSlopes { turned, facing, secant, .. } = self.own_slopes(&swept)?;
-        let along = turned.map(|k| (k * cos - sin) / (cos + k * sin));
-        let growth = secant.quotient(swept.radii * facing);
-        Some(SurfaceSlopes { xi, along, growth, across: growth * swept.aside })
-    }
-
-    /// Returns bounds of the slopes of the surface over a box in its own axes; `None` where it may fold back over the contact frame.
-    fn own_slopes(&self, SweptBox { slopes, radii, aside, .. }: &SweptBox) -> Option<OwnSlopes> {
-        let WheelSurface { sin, cos, .. } = self.surface;
-        let own = slopes.map(|m| (m * cos + sin) / (cos - m * sin));
-        let secant = |y: f64, r: f64| r / (r * r - y * y).sqrt();
-        let secant =
-            Interval::new(secant(aside.nearest(0.0), radii.high), secant(aside.magnitude(), radii.low));
-        let turned = own * secant;
-        let facing = Interval::around(turned.ends().map(|k| cos + k * sin));
-        (facing.low > 0.0).then_some(OwnSlopes { own, turned, facing, secant })
-    }
-
-    /// Returns bounds of the second derivatives of the surface over a box along ξ and η; `None` as for [`Self::feet`], and where the slope of
-    /// the profile falls by more than `most_fall` at kinks.
-    ///
-    /// Method: with P the radius and c = cos v, f = cosθ + k sinθ, those along ξ′ and η′ are (P T′ + (k sin v)²)/(P c f³),
-    /// b (k cosθ − (P T′ − T²) sinθ)/(P c f²) and (1 + b² (cos²θ + (P T′ − T²) sin²θ))/(P c f), and T′ = κ (1 + T²)^{3/2}.
-    fn bends_over(&self, xi: Interval, eta: Interval, most_fall: f64) -> Option<BoxBends> {
-        let WheelSurface { sin, cos, .. } = self.surface;
-        let swept = self.feet(xi, eta)?;
-        let OwnSlopes { own, turned, facing, secant } = self.own_slopes(&swept)?;
-        let SweptBox { abscissae, radii, aside, .. } = swept;
-        let falls: f64 = self.tree.kinks(abscissae).map(|kink| (-kink).max(0.0)).sum();
-        if falls > most_fall {
-            return None;
-        }
-        let bend = self.tree.bends(abscissae, own) * radii;
-        let (sine, deep) = (aside.quotient(radii), radii.quotient(secant) * facing);
-        let (b, level) = (aside.quotient(deep), bend + -own.squared());
-        let by = |top: Interval, power: i32| top.quotient(deep * facing.map(|f| f.powi(power)));
-        let along = by(bend + (turned * sine).squared(), 2);
-        let mixed = by(b * (turned * cos + -(level * sin)), 1);
-        let across = by(b.squared() * (level * (sin * sin) + cos * cos) + 1.0, 0);
-        let [s, c] = self.skew;
-        Some(BoxBends {
-            along: along * (c * c) + mixed * (-2.0 * s * c) + across * (s * s),
-            mixed: (along + -across) * (s * c) + mixed * (c * c - s * s),
-            across: along * (s * s) + mixed * (2.0 * s * c) + across * (c * c),
-            falls,
-        })
-    }
-
-    /// Returns a height \[mm\] in the contact frame that the surface over a box nowhere lies below; infinite where it has none.
-    fn lowest(&self, xi: Interval, eta: Interval) -> f64 {
-        let [along, aside] = self.turned(xi, eta);
-        let rise = sagittae(Interval::of(aside.nearest(0.0)), self.radii).low * self.surface.cos;
-        self.tree.heights(self.abscissae(along, aside, self.radii)).low + rise
-    }
-}
-
-/// Returns bounds of the sagittae \[mm\] at places aside of the midplane, from bounds of the distances from the axle.
-fn sagittae(aside: Interval, radii: Interval) -> Interval {
-    let sagitta = |y: f64, r: f64| y * y / (r + (r * r - y * y).max(0.0).sqrt());
-    Interval::new(sagitta(aside.nearest(0.0), radii.high), sagitta(aside.magnitude(), radii.low))
 }
 
 /// What lies below the wheel.
@@ -255,6 +42,16 @@ struct SurfaceBounds {
     angle: Interval,
     /// Curvature \[1/mm\], positive where the hollow side is up.
     curvature: Interval,
+}
+
+/// The raised curve of a rail's surface over a range of σ.
+struct RaisedSlopes {
+    /// ξ \[mm\].
+    xi: Interval,
+    /// dξ/dσ.
+    run: Interval,
+    /// dζ/dσ.
+    rise: Interval,
 }
 
 /// Bounds of the gap of a placed pair.
@@ -278,26 +75,37 @@ impl<'a> GapBounds<'a> {
         self.wheel.within(xi)
     }
 
+    /// Returns whether no surface of revolution is found to fold back over a box.
+    pub(super) fn are_open(&self, xi: Interval, eta: Interval) -> bool {
+        let below = match &self.under {
+            Under::Rail(_) => true,
+            Under::Roller(roller) => roller.is_open(xi, eta),
+        };
+        below && self.wheel.is_open(xi, eta)
+    }
+
     /// Returns bounds of the slopes of s over a box; `None` where a surface ends, steps or stands upright, and far from the midplane.
-    pub(super) fn over_plane(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
+    pub(super) fn over_plane(&self, xi: Interval, eta: Interval, torn: Torn) -> Option<BoxSlopes> {
         let [none, one] = [0.0, 1.0].map(Interval::of);
         let below = match &self.under {
             Under::Rail(tree) => {
                 let along = -tree.over(xi)?.slopes;
                 SurfaceSlopes { xi, along, growth: none, across: none }
             }
-            Under::Roller(roller) => roller.slopes_over(xi, eta)?,
+            Under::Roller(roller) => roller.slopes_over(xi, eta, torn)?,
         };
-        if !below.along.magnitude().is_finite() {
-            return None;
-        }
-        let above = self.wheel.slopes_over(xi, eta)?;
+        let above = self.wheel.slopes_over(xi, eta, torn)?;
         let [sin, cos] = self.wheel.skew;
         let along = above.along * cos + -(above.across * sin) + below.along;
         let lowest = above.along * (1.0 / cos) + below.across * (sin / cos) + below.along;
+        let at_kinks = if sin == 0.0 {
+            Interval::ALL
+        } else {
+            -(above.across + below.across * cos) * (1.0 / sin) + below.along
+        };
         Some(BoxSlopes {
             along,
-            lowest: along.cut(lowest),
+            lowest: along.cut(lowest).cut(at_kinks),
             across: above.along * sin + above.across * cos + below.across,
             level_at: self.level_at(&above, one, below.growth),
         })
@@ -314,21 +122,12 @@ impl<'a> GapBounds<'a> {
         (-at_midplane).quotient(facing * spread)
     }
 
-    /// Returns bounds of the slopes of the wheel's height over the raised curve of a rail's surface, over a box of σ and η; `None` as for
-    /// [`Self::over_plane`].
-    pub(super) fn over_raised(
-        &self,
-        (raised, approach): (&Raised<'_>, f64),
-        sigma: Interval,
-        eta: Interval,
-    ) -> Option<BoxSlopes> {
+    /// Returns bounds of the direction of the raised curve of a rail's surface over a range of σ.
+    fn raised_slopes(&self, (raised, approach): (&Raised<'_>, f64), sigma: Interval) -> Option<RaisedSlopes> {
         let Under::Rail(tree) = &self.under else { return None };
-        let [from, to] = sigma.ends().map(|sigma| raised.at(sigma));
-        let foot = Interval::new(from.foot, to.foot);
+        let ends = sigma.ends().map(|sigma| raised.at(sigma));
+        let foot = Interval::new(ends[0].foot, ends[1].foot);
         let slopes = tree.over(foot)?.slopes;
-        if !slopes.magnitude().is_finite() {
-            return None;
-        }
         let [sine, cosine] = [
             slopes.map(|slope| direction(slope)[1]),
             Interval::new(direction(slopes.magnitude())[0], direction(slopes.nearest(0.0))[0]),
@@ -336,15 +135,52 @@ impl<'a> GapBounds<'a> {
         let turned = tree.curvatures(foot) * approach;
         let run = cosine + -(turned * (cosine.squared() + -sine.squared()));
         let rise = sine + -(turned * sine * cosine * 2.0);
-        // The curve runs straight from end to end, or strays by no more than this.
-        let stray = if run.low >= 0.0 { 0.0 } else { run.magnitude() * sigma.width() };
-        let above = self.wheel.slopes_over(Interval::between(from.xi(), to.xi()).grown(stray), eta)?;
+        // The curve runs straight from end to end, or goes back and comes again.
+        let back = if run.low >= 0.0 || run.high <= 0.0 { 0.0 } else { -run.low * run.high / run.width() };
+        let xi = Interval::between(ends[0].xi(), ends[1].xi()).grown(back * sigma.width());
+        Some(RaisedSlopes { xi, run, rise })
+    }
+
+    /// Returns the range of ξ \[mm\] of the raised curve of a rail's surface over a range of σ; `None` where the rail ends or steps.
+    pub(super) fn raised_xi(&self, raised: (&Raised<'_>, f64), sigma: Interval) -> Option<Interval> {
+        self.raised_slopes(raised, sigma).map(|over| over.xi)
+    }
+
+    /// Returns bounds of the slope of the gap over a rail along a curve on the wheel, from those of its dζ/dξ; `None` where the rail ends or
+    /// steps. `raised` is its raised surface, unless the gap is over the tangent plane.
+    pub(super) fn along_curve(
+        &self,
+        slopes: Interval,
+        (raised, approach): (Option<&Raised<'_>>, f64),
+        xi: Interval,
+    ) -> Option<Interval> {
+        match (raised, &self.under) {
+            (Some(raised), _) => {
+                let RaisedSlopes { run, rise, .. } = self.raised_slopes((raised, approach), xi)?;
+                Some(slopes * run + -rise)
+            }
+            (None, Under::Rail(tree)) => Some(slopes + -tree.over(xi)?.slopes),
+            (None, Under::Roller(_)) => None,
+        }
+    }
+
+    /// Returns bounds of the slopes of the wheel's height over the raised curve of a rail's surface, over a box of σ and η; `None` as for
+    /// [`Self::over_plane`].
+    pub(super) fn over_raised(
+        &self,
+        (raised, approach): (&Raised<'_>, f64),
+        sigma: Interval,
+        (eta, torn): (Interval, Torn),
+    ) -> Option<BoxSlopes> {
+        let RaisedSlopes { xi, run, rise } = self.raised_slopes((raised, approach), sigma)?;
+        let above = self.wheel.slopes_over(xi, eta, torn)?;
         let [sin, cos] = self.wheel.skew;
         let along = (above.along * cos + -(above.across * sin)) * run + -rise;
         let lowest = above.along * (1.0 / cos) * run + -rise;
+        let at_kinks = if sin == 0.0 { Interval::ALL } else { -above.across * (1.0 / sin) * run + -rise };
         Some(BoxSlopes {
             along,
-            lowest: along.cut(lowest),
+            lowest: along.cut(lowest).cut(at_kinks),
             across: above.along * sin + above.across * cos,
             level_at: self.level_at(&above, Interval::of(1.0), Interval::of(0.0)),
         })
@@ -375,13 +211,13 @@ impl<'a> GapBounds<'a> {
             Under::Roller(roller) => {
                 let below = Interval::new(0.0, eta.magnitude().powi(2) / roller.radii.low);
                 let SurfaceSlopes { along, across, growth, .. } =
-                    roller.slopes_over(foot + below * sines, eta)?;
+                    roller.slopes_over(foot + below * sines, eta, Torn::No)?;
                 let (along, across, facing) = of_body([along, across], -angle, -(below * curvature))?;
                 (below, [along, across], growth.quotient(facing))
             }
         };
         let above = gap + -below;
-        let over = self.wheel.slopes_over(foot + -(above * sines), eta)?;
+        let over = self.wheel.slopes_over(foot + -(above * sines), eta, Torn::No)?;
         let [sin, cos] = self.wheel.skew;
         let turned = [over.along * cos + -(over.across * sin), over.along * sin + over.across * cos];
         let (along, across, facing) = of_body(turned, angle, above * curvature)?;
@@ -408,14 +244,32 @@ impl<'a> GapBounds<'a> {
         Some(SurfaceBounds { foot, angle: slopes.map(f64::atan), curvature })
     }
 
-    /// Returns a height \[mm\] above which the wheel's surface lies over what is below it, all over a box of ξ and η, and a range of ξ of the
-    /// profile below: infinite where a body has no surface there.
-    pub(super) fn least(&self, [xi, foot]: [Interval; 2], eta: Interval) -> f64 {
+    /// Returns a height \[mm\] as [`Self::least`], from fewer steps.
+    pub(super) fn lowest(&self, [xi, foot]: [Interval; 2], eta: Interval) -> f64 {
         let fall = match &self.under {
             Under::Rail(tree) => -tree.heights(foot).high,
             Under::Roller(roller) => roller.lowest(foot, eta),
         };
         self.wheel.lowest(xi, eta) + fall
+    }
+
+    /// Returns a height \[mm\] above which the wheel's surface lies over what is below it, all over a box of ξ and η, and a range of ξ of the
+    /// profile below: infinite where a body has no surface there.
+    pub(super) fn least(&self, [xi, foot]: [Interval; 2], eta: Interval) -> f64 {
+        let fall = match &self.under {
+            Under::Rail(tree) => -tree.heights(foot).high,
+            Under::Roller(roller) => roller.heights(foot, eta).low,
+        };
+        self.wheel.heights(xi, eta).low + fall
+    }
+
+    /// Returns a height \[mm\] below which the wheel's surface lies over what is below it, as [`Self::least`]: −∞ where a body has none.
+    pub(super) fn most(&self, [xi, foot]: [Interval; 2], eta: Interval) -> f64 {
+        let fall = match &self.under {
+            Under::Rail(tree) => -tree.heights(foot).low,
+            Under::Roller(roller) => roller.heights(foot, eta).high,
+        };
+        self.wheel.heights(xi, eta).high + fall
     }
 
     /// Returns whether the least s of a line is proved to be a convex function of ξ over a box of the tangent plane that holds the lowest

@@ -2,6 +2,7 @@
 
 pub(super) use super::bounds::BoxSlopes;
 use super::bounds::GapBounds;
+use super::round::Torn;
 use crate::conformal::{NormalGap, Reference};
 use crate::numerics::interval::Interval;
 use crate::patch::level::{Level, steps};
@@ -131,9 +132,8 @@ impl<'a> PatchGap<'a> {
         match &self.of {
             GapOf::Level(level) if let Some(gap) = level.normal_gap() => gap.rail().reach(),
             GapOf::Raised(raised) if raised.surface.is_some() => raised.reach(),
-            // A skewed wheel lies over another part of what is below it.
-            _ if self.is_skewed() => self.placement.rail().section.reach(),
-            _ => self.placement.overlap(),
+            // A skewed or tilted wheel lies over another part of what is below it.
+            _ => self.placement.rail().section.reach(),
         }
     }
 
@@ -151,6 +151,17 @@ impl<'a> PatchGap<'a> {
             GapOf::Raised(raised) => raised.gap(xi, eta),
             GapOf::Level(level) => level.gap(xi, eta) - self.approach,
         }
+    }
+
+    /// Returns G \[mm\]; infinite where a body has no surface.
+    pub(super) fn or_infinite(&mut self, xi: f64, eta: f64) -> f64 {
+        let gap = self.gap(xi, eta);
+        if gap.is_nan() { f64::INFINITY } else { gap }
+    }
+
+    /// Returns a number of roundings of R \[mm\].
+    pub(super) fn roundings(&self, count: f64) -> f64 {
+        count * f64::EPSILON * self.placement.rolling_radius()
     }
 
     /// Returns G and its slopes; `None` where a body has no surface.
@@ -191,19 +202,43 @@ impl<'a> PatchGap<'a> {
     /// where a surface ends, steps or stands upright, and far from the midplane.
     pub(super) fn slopes(&self, xi: Interval, eta: Interval, gap: Interval) -> Option<BoxSlopes> {
         match &self.of {
-            GapOf::Raised(raised) if raised.surface.is_some() => {
-                self.bounds.over_raised((raised, self.approach), xi, eta)
-            }
             GapOf::Level(level) if let Some(normal) = level.normal_gap() => {
                 self.bounds.over_surface((normal.rail(), self.approach), (xi, gap), eta)
             }
-            _ => self.bounds.over_plane(xi, eta),
+            _ => self.slopes_of_parts(xi, eta, Torn::No),
+        }
+    }
+
+    /// As [`Self::slopes`], also where a surface ends or steps a rounding from the sides of the box; `None` along normals.
+    pub(super) fn slopes_by_rounding(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
+        let known = self.has_plain_bounds();
+        known.then(|| self.slopes_of_parts(xi, eta, Torn::ByRounding)).flatten()
+    }
+
+    /// As [`Self::slopes`], but along normals, for each part of surfaces that end or step in the box, continued over all of it.
+    pub(super) fn torn_slopes(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
+        self.slopes_of_parts(xi, eta, Torn::Allowed)
+    }
+
+    /// Returns bounds of the slope of G along a curve on the wheel over a range of ξ or σ, from those of its dζ/dξ; `None` on a roller, and where
+    /// what is below ends or steps.
+    pub(super) fn along_curve(&self, slopes: Interval, xi: Interval) -> Option<Interval> {
+        let raised = self.raised().filter(|raised| raised.surface.is_some());
+        self.bounds.along_curve(slopes, (raised, self.approach), xi)
+    }
+
+    fn slopes_of_parts(&self, xi: Interval, eta: Interval, torn: Torn) -> Option<BoxSlopes> {
+        match &self.of {
+            GapOf::Raised(raised) if raised.surface.is_some() => {
+                self.bounds.over_raised((raised, self.approach), xi, (eta, torn))
+            }
+            _ => self.bounds.over_plane(xi, eta, torn),
         }
     }
 
     /// Returns bounds of the slopes of s over a box of the tangent plane, as [`Self::slopes`].
     pub(super) fn plane_slopes(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
-        self.bounds.over_plane(xi, eta)
+        self.bounds.over_plane(xi, eta, Torn::No)
     }
 
     /// Whether bounds of slopes hold whatever G is.
@@ -211,9 +246,30 @@ impl<'a> PatchGap<'a> {
         !matches!(&self.of, GapOf::Level(level) if level.normal_gap().is_some())
     }
 
+    /// Returns what G \[mm\] is proved not to be below wherever both bodies have a surface over a box, by their heights alone.
+    pub(super) fn least(&self, xi: Interval, eta: Interval) -> f64 {
+        self.bounds.least(self.feet(xi), eta) - self.approach
+    }
+
     /// Returns whether G is proved to be above 0 wherever both bodies have a surface over a box, by their heights alone.
     pub(super) fn is_high(&self, xi: Interval, eta: Interval) -> bool {
-        self.bounds.least(self.feet(xi), eta) > self.approach.max(0.0)
+        self.bounds.lowest(self.feet(xi), eta) > self.approach.max(0.0)
+    }
+
+    /// Returns whether G is proved to be below 0, or not, wherever both bodies have a surface over a box, by their heights alone. Where it is
+    /// below 0, no surface folds back over the box: between two rims it then is all over it, or nowhere.
+    pub(super) fn is_all(&self, xi: Interval, eta: Interval, inside: bool) -> bool {
+        let feet = self.feet(xi);
+        if inside {
+            self.bounds.most(feet, eta) < self.lift() && self.bounds.are_open(feet[0], eta)
+        } else {
+            self.bounds.least(feet, eta) > self.approach.max(0.0)
+        }
+    }
+
+    /// Returns the least height \[mm\] by which what is below is raised.
+    fn lift(&self) -> f64 {
+        if self.is_over_plane() { self.approach } else { 0.0 }
     }
 
     /// As [`Self::is_high`], for parts of the range of η: what stands far aside of the midplane is high above it.
@@ -247,6 +303,13 @@ impl<'a> PatchGap<'a> {
             GapOf::Level(level) => level.normal_gap().map(NormalGap::rail),
         };
         let Some(surface) = surface else { return [xi; 2] };
+        if let GapOf::Raised(raised) = &self.of {
+            let [from, to] = xi.ends().map(|sigma| raised.at(sigma));
+            // Where the rail steps, the curve is no longer than the surface below it, or bent by less than its radius.
+            let longest = || Interval::between(from.xi(), to.xi()).grown(2.0 * xi.width());
+            let over = self.bounds.raised_xi((raised, self.approach), xi).unwrap_or_else(longest);
+            return [over, Interval::new(from.foot, to.foot)];
+        }
         let foot = xi.map(|sigma| surface.point(sigma).map_or(f64::NAN, |at| at.xi));
         [foot.grown(self.approach.abs()), foot]
     }

@@ -3,8 +3,9 @@
 use nalgebra::UnitComplex;
 
 use super::Lines;
+use super::ranges::SHALLOW;
 use crate::numerics::interval::Interval;
-use crate::patch::in_valleys::slicer::QUADRATIC;
+use crate::numerics::roots::change;
 use crate::placement::Placement;
 use crate::separation::Relief;
 use crate::separation::wheel_surface::{WheelSurface, sagitta};
@@ -15,8 +16,14 @@ const FARTHER: f64 = 0.5;
 /// Most steps to where a joint is under an edge.
 const STEPS: usize = 24;
 
+/// Factor by which a circle is farther from the patch than a step along a parabola leads down, and is taken not to reach it.
+const SURELY: f64 = 4.0;
+
 /// Factor by which that place is sought farther out.
 const WIDER: f64 = 1.25;
+
+/// Factor by which it is sought nearer, where nothing faces the joint.
+const NEARER: f64 = 0.5;
 
 /// Newton steps to the place of the raised curve at ξ; over the tangent plane the first one leads there.
 const TO_PLACE: usize = 3;
@@ -63,6 +70,22 @@ impl JointCircle {
             moves: [run * cos - sin, cos + run * sin, turn * level],
         }
     }
+
+    /// Returns y \[mm\] of the place nearest to the midplane whose ξ lies in a range.
+    ///
+    /// Method: Newton's steps. Degenerate: 0 where they lead nowhere.
+    fn beside(&self, range: Interval) -> f64 {
+        let mut y = 0.0;
+        for _ in 0..TO_PLACE {
+            let CirclePlace { at: [xi, ..], moves: [run, ..] } = self.at(y);
+            let off = xi - range.nearest(xi);
+            if off == 0.0 {
+                break;
+            }
+            y -= off / run;
+        }
+        if y.abs() < self.radius { y } else { 0.0 }
+    }
 }
 
 /// Finds where edges of the patch on lines pass joints.
@@ -74,7 +97,7 @@ impl PassedJoints<'_, '_> {
     /// Appends the ξ or σ inside a range at which an edge passes a joint of the wheel, or of a roller over the tangent plane. `depth`
     /// \[mm\] is that of the patch.
     ///
-    /// Method: along the circle of a joint the gap is nearly a parabola; Newton's steps from where that is 0. A joint that is missed costs
+    /// Method: along the circle of a joint the gap is nearly a parabola, beside whose roots those are sought. A joint that is missed costs
     /// the boundary some more stretches.
     pub(in crate::patch) fn within(mut self, over: Interval, depth: f64, places: &mut Vec<f64>) {
         let placement = self.lines.gap.placement();
@@ -97,7 +120,8 @@ impl PassedJoints<'_, '_> {
         let lowest = over.ends().map(|xi| self.lines.lowest(xi, 0.0).abs());
         let far = lowest[0].max(lowest[1]) + (1.0 + FARTHER) * half;
         let aside = far * skew.im.abs() + far * far / surface.axle * surface.sin.abs();
-        let range = self.lines.gap.feet(over)[0].grown(aside);
+        let [feet, _] = self.lines.gap.feet(over);
+        let range = feet.grown(aside);
         let mut joints: Vec<(f64, f64)> = surface.section.joints(range).collect();
         joints.dedup_by_key(|(p, _)| *p);
         for (p, height) in joints {
@@ -107,43 +131,53 @@ impl PassedJoints<'_, '_> {
                 places.extend(over.surrounds(p).then_some(p));
                 continue;
             }
+            let from = circle.beside(feet);
             let sides: &[f64] = if self.lines.gap.is_skewed() { &[-1.0, 1.0] } else { &[1.0] };
-            let passed = sides.iter().filter_map(|side| self.passed((&circle, &mut facing), *side));
+            let passed = sides.iter().filter_map(|side| self.passed((&circle, &mut facing), (from, *side)));
             places.extend(passed.filter(|xi| over.surrounds(*xi)));
         }
     }
 
     /// Returns ξ or σ \[mm\] where the circle of a joint leaves the patch on one side.
     ///
-    /// Method: outwards from the lowest place until the gap is positive, and back by Newton's steps, which come from outside.
-    fn passed(&mut self, (circle, facing): (&JointCircle, &mut FacingBody<'_>), side: f64) -> Option<f64> {
+    /// Method: from y = `from` \[mm\] down to the lowest place, or the patch; outwards from there until the gap is positive, and back to where
+    /// it passes δ.
+    fn passed(
+        &mut self,
+        (circle, facing): (&JointCircle, &mut FacingBody<'_>),
+        (from, side): (f64, f64),
+    ) -> Option<f64> {
         let opening = self.lines.gap.opening;
-        let (mut sigma, mut y) = (self.lines.gap.sigma(circle.at(0.0).at[0]), 0.0);
-        let [_, slope] = self.on_circle((circle, facing), y, &mut sigma)?;
-        y = -slope / (2.0 * opening);
-        let lowest = y;
-        let [gap, _] = self.on_circle((circle, facing), y, &mut sigma)?;
-        let mut half = (-gap / opening).sqrt();
+        let (mut sigma, mut lowest) = (self.lines.gap.sigma(circle.at(from).at[0]), from);
+        let mut half = f64::NAN;
+        for _ in 0..STEPS {
+            let [gap, slope] = self.on_circle((circle, facing), lowest, &mut sigma)?;
+            half = (-gap / opening).sqrt();
+            let step = slope / (2.0 * opening);
+            if half > 0.0 || gap > SURELY * opening * step * step {
+                break;
+            }
+            lowest -= step;
+        }
         // NaN where the circle does not reach the patch.
-        let inside = half > 0.0;
-        y = lowest + side * half;
-        let mut outside = false;
-        for _ in 0..if inside { STEPS } else { 0 } {
-            let [gap, slope] = self.on_circle((circle, facing), y, &mut sigma)?;
-            if !outside && gap < 0.0 {
-                half *= WIDER;
-                y = lowest + side * half;
-                continue;
-            }
-            outside = true;
-            let step = gap / slope;
-            y -= step;
-            if slope * side <= 0.0 || (y - lowest) * side <= 0.0 {
-                return None;
-            }
-            if step.abs() <= QUADRATIC * half {
-                self.on_circle((circle, facing), y, &mut sigma)?;
-                return Some(sigma);
+        if half.is_nan() {
+            return None;
+        }
+        for _ in 0..STEPS {
+            let y = lowest + side * half;
+            match self.on_circle((circle, facing), y, &mut sigma) {
+                Some([gap, _]) if gap < 0.0 => half *= WIDER,
+                Some(_) => {
+                    let enough = self.lines.gap.roundings(SHALLOW);
+                    let mut depth = |y: f64| Some(self.on_circle((circle, facing), y, &mut sigma)?[0]);
+                    let y = change(|y| depth(y).unwrap_or(f64::NAN), [lowest, y], enough);
+                    return depth(y).map(|_| sigma);
+                }
+                // Nothing faces it that far out.
+                None => {
+                    half *= NEARER;
+                    sigma = self.lines.gap.sigma(circle.at(lowest).at[0]);
+                }
             }
         }
         None

@@ -4,22 +4,31 @@
 //! second one only where a hollow of its profile has a curvature κ so large that κ sin²χ > 1/ϱ_W + 1/ϱ_R, with ϱ the distances from the
 //! axles.
 
+mod answers;
 pub(super) mod bands;
 mod bounds;
 mod ends;
 mod gap;
 pub(super) mod joints;
+mod laid;
+pub(super) mod lanes;
+pub(super) mod least;
+pub(super) mod line;
+pub(super) mod newton;
+pub(super) mod open;
 mod place;
 pub(super) mod ranges;
+pub(super) mod rims;
+mod round;
 mod tree;
 
 pub(super) use gap::{PatchGap, sections};
 
 use gap::BoxSlopes;
+use newton::{QUADRATIC, newton_from};
 use place::LowestPlace;
+use rims::{FARTHEST_SINE, Rims};
 
-use super::in_valleys::circle::{FARTHEST_SINE, Turned};
-use super::in_valleys::slicer::{QUADRATIC, newton_from};
 use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::{bracketed, last_where};
@@ -40,14 +49,17 @@ const SECANTS: usize = 10;
 /// distance from there.
 const BESIDE_END: f64 = 1e-6;
 
+/// Distance of a place beside an end or step of a surface, as a share of R. It is a million roundings, and less than any segment.
+const BESIDE: f64 = 1e-9;
+
+/// Share of the slope or gap from which steps began, up to which they end at a lowest place or tip: it then is as near as the last step is short.
+const LEVELLED: f64 = 1e-4;
+
 /// Slope, in roundings of 1, up to which a place counts as the lowest one: it is then within 1e-12 mm.
 const SLOPE_ROUNDINGS: f64 = 8.0;
 
-/// Height \[mm\] of one lowest place of a line over another up to which the higher one does not count.
-const SHALLOW_VALLEY: f64 = 1e-13;
-
-/// Most boxes by which lines of a range are proved to have one lowest place.
-const MOST_BOXES: usize = 256;
+/// Height, in roundings of R, of one lowest place of a line over another up to which the higher one does not count.
+const SHALLOW_VALLEY: f64 = 1.0;
 
 /// Share by which a range of η is widened that is to hold all lowest places.
 const FARTHER_VALLEY: f64 = 0.125;
@@ -55,8 +67,8 @@ const FARTHER_VALLEY: f64 = 0.125;
 /// Most doublings of a range that is to hold the gap, or the lowest places along η.
 const WIDENINGS: usize = 6;
 
-/// Least range of η \[mm\] around a lowest place.
-const NARROWEST: f64 = 1e-9;
+/// Width, as a share of R, up to which a part of a line or a box is not halved again.
+const NARROWEST: f64 = 2e-12;
 
 /// The lines of a placed pair at one approach.
 #[derive(Debug)]
@@ -66,6 +78,8 @@ pub(super) struct Lines<'a> {
     farthest: f64,
     /// η \[mm\] at which lines of constant ξ touch the circles of the wheel's ends, or come nearest to that.
     turning: [f64; 2],
+    /// Circles at which the wheel ends or steps.
+    rims: Rims,
     /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
     steps: [Vec<Interval>; 2],
     /// Neighbouring lines between which the least gap is known, once the ranges of the patch are.
@@ -85,17 +99,39 @@ impl<'a> Lines<'a> {
 
     fn of(placement: &'a Placement, gap: PatchGap<'a>) -> Self {
         let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
-        let turned = Turned::new(placement);
-        let turning = [0, 1].map(|end| turned.touched(end).map_or(0.0, |(place, _)| place.eta));
-        Self { gap, farthest: FARTHEST_SINE * placement.rolling_radius(), turning, steps, cells: Vec::new() }
+        let rims = Rims::new(placement);
+        let turning = [0, 1].map(|end| rims.touched(end).map_or(0.0, |[_, eta, _]| eta));
+        let farthest = FARTHEST_SINE * placement.rolling_radius();
+        Self { gap, farthest, turning, rims, steps, cells: Vec::new() }
     }
 
-    /// Returns η \[mm\] of the least gap at ξ, sought from a guess: 0 without skew. With skew it is the end of a surface if the gap falls up
-    /// to there, and NaN where a body has no surface on the whole line.
+    /// Returns the width \[mm\] up to which nothing is halved again.
+    fn narrowest(&self) -> f64 {
+        NARROWEST * self.gap.placement().rolling_radius()
+    }
+
+    /// Returns η \[mm\] of the least gap at ξ, sought from a guess: 0 without skew. With skew it is the end of a surface, or a step up, if the gap
+    /// falls up to there, and NaN where a body has no surface on the whole line.
     pub(super) fn lowest(&mut self, xi: f64, guess: f64) -> f64 {
         if !self.gap.is_skewed() {
             return 0.0;
         }
+        let lowest = self.level_place(xi, guess);
+        if self.steps.iter().all(Vec::is_empty) {
+            return lowest;
+        }
+        let known = self.gap.gap(xi, guess);
+        if self.gap.gap(xi, lowest) > known {
+            let beside = guess + (BESIDE * self.gap.placement().rolling_radius()).copysign(lowest - guess);
+            let mut is_lower = |eta: f64| self.gap.gap(xi, eta) <= known;
+            return if is_lower(beside) { last_where(is_lower, beside, lowest) } else { guess };
+        }
+        lowest
+    }
+
+    /// Returns η \[mm\] of a place of the line of ξ, sought from a guess, up to which the gap of a skewed wheel falls, as for
+    /// [`Self::lowest`].
+    fn level_place(&mut self, xi: f64, guess: f64) -> f64 {
         let (mut begin, mut slope) = (guess, self.gap.across(xi, guess));
         if slope.is_nan() {
             (begin, slope) = (0.0, self.gap.across(xi, 0.0));
@@ -117,17 +153,17 @@ impl<'a> Lines<'a> {
         if let Some(lowest) = self.lowest_by_secants(xi, (begin, slope), 0.5 * first) {
             return lowest;
         }
+        let known = self.gap.gap(xi, begin);
+        let falls = |gap: &mut PatchGap<'_>, off: f64| {
+            gap.at(xi, begin + off).is_some_and(|at| at.across * slope > 0.0 && at.gap <= known)
+        };
         let (mut near, mut far) = (0.0, first);
-        while self.gap.across(xi, begin + far) * slope > 0.0 {
+        while falls(&mut self.gap, far) {
             (near, far) = (far, WIDER * far);
         }
-        let mut end = far;
-        if self.gap.across(xi, begin + far).is_nan() {
-            end = last_where(|off| !self.gap.across(xi, begin + off).is_nan(), near, far);
-            far = end - BESIDE_END.min(end.abs()).copysign(end);
-        }
-        // Without a root the gap falls up to the end of the surface.
-        begin + bracketed(|off| self.gap.across(xi, begin + off), near, far).unwrap_or(end)
+        let turn = bracketed(|off| self.gap.across(xi, begin + off), near, far);
+        // Without a root the gap falls up to the end of the surface, or farther out another part of it lies higher.
+        begin + turn.unwrap_or_else(|| last_where(|off| falls(&mut self.gap, off), near, far))
     }
 
     /// Returns the η \[mm\] nearest to 0 at which both bodies have a surface on the line of ξ, which has none at η = 0; NaN if there is none.
@@ -142,10 +178,19 @@ impl<'a> Lines<'a> {
         met.map_or(f64::NAN, |eta| last_where(has_surface, eta, 0.0))
     }
 
+    /// Returns η \[mm\] of the least gap at ξ, sought from a place; `None` where no body is there, or steps from there do not settle.
+    fn lowest_beside(&mut self, xi: f64, begin: f64) -> Option<f64> {
+        let slope = self.gap.across(xi, begin);
+        if slope == 0.0 || !self.gap.is_skewed() {
+            return Some(begin);
+        }
+        self.lowest_by_secants(xi, (begin, slope), -0.5 * slope / self.gap.opening)
+    }
+
     /// Returns η \[mm\] of the least gap at ξ. It is sought from η = `begin`, where the gap has this slope, and first at `guess` \[mm\] from
     /// there; `None` where the steps do not settle.
     fn lowest_by_secants(&mut self, xi: f64, (begin, slope): (f64, f64), guess: f64) -> Option<f64> {
-        let (mut last, mut before, mut off) = (0.0, slope, guess);
+        let (first, mut last, mut before, mut off) = (slope, 0.0, slope, guess);
         for _ in 0..SECANTS {
             let slope = self.gap.across(xi, begin + off);
             if slope.is_nan() && last == 0.0 {
@@ -163,8 +208,9 @@ impl<'a> Lines<'a> {
             }
             let step = slope * ((off - last) / (slope - before));
             (last, before, off) = (off, slope, off - step);
+            // At a kink slopes do not fall as steps do.
             if step.abs() <= QUADRATIC * guess.abs() {
-                return Some(begin + off);
+                return (slope.abs() <= LEVELLED * first.abs()).then_some(begin + off);
             }
         }
         None
@@ -220,36 +266,15 @@ impl<'a> Lines<'a> {
         })
     }
 
-    /// Returns whether each line of a range of ξ or σ \[mm\] is proved to meet the patch in one interval at most.
-    ///
-    /// Method: the lowest places of a range lie between an η at which the gap falls along η all over the range and one at which it rises.
-    /// Between them each line has one lowest place, and outwards the gap only rises, or both bodies are above each other by their heights.
-    /// Where that is not proved, the range is halved.
-    pub(super) fn have_one_slice(&mut self, over: Interval) -> bool {
-        let mut budget = MOST_BOXES;
-        let mut waiting = vec![over];
-        while let Some(xi) = waiting.pop() {
-            let middle = self.lowest(xi.middle(), 0.0);
-            if self.is_plain(xi, middle, &mut budget) {
-                continue;
-            }
-            if budget == 0 || !xi.surrounds(xi.middle()) {
-                return false;
-            }
-            waiting.extend(xi.halves());
-        }
-        true
-    }
-
-    fn is_plain(&self, xi: Interval, middle: f64, budget: &mut usize) -> bool {
+    /// Whether each line of a range is proved to have one lowest place in a range of η, around that of its middle, and to rise from there.
+    fn is_plain(&self, (xi, eta): (Interval, Interval), middle: f64, budget: &mut usize) -> bool {
         let Some((valley, _)) = self.valley(xi, Interval::of(middle), Interval::ALL) else {
             *budget = budget.saturating_sub(1);
             return false;
         };
-        let within = self.gap.within(xi);
-        self.gap.is_convex(xi, valley, SHALLOW_VALLEY)
-            && self.opens(xi, Interval::new(valley.high, within.high), 1.0, budget)
-            && self.opens(xi, Interval::new(within.low, valley.low), -1.0, budget)
+        self.gap.is_convex(xi, valley, self.gap.roundings(SHALLOW_VALLEY))
+            && self.opens(xi, Interval::new(valley.high, eta.high), 1.0, budget)
+            && self.opens(xi, Interval::new(eta.low, valley.low), -1.0, budget)
     }
 
     /// Returns whether the gap is proved to rise (1) or fall (−1) along η over a box, wherever the bodies are not above each other by their
@@ -257,7 +282,10 @@ impl<'a> Lines<'a> {
     fn opens(&self, xi: Interval, eta: Interval, sign: f64, budget: &mut usize) -> bool {
         let mut waiting = vec![(xi, eta)];
         while let Some((xi, eta)) = waiting.pop() {
-            if *budget == 0 || !eta.has_width() {
+            if !eta.has_width() {
+                continue;
+            }
+            if *budget == 0 {
                 return false;
             }
             *budget -= 1;
@@ -293,14 +321,14 @@ impl<'a> Lines<'a> {
             let midplane = Interval::of(0.0);
             return Some((midplane, slopes(midplane)?));
         }
-        let mut valley = known.grown(FARTHER_VALLEY * known.width() + NARROWEST);
+        let mut valley = known.grown(FARTHER_VALLEY * known.width() + self.narrowest());
         for _ in 0..WIDENINGS {
             let slopes = slopes(valley)?;
             if valley.low < slopes.level_at.low && slopes.level_at.high < valley.high {
                 return Some((valley, slopes));
             }
             let wider = known.hull(slopes.level_at);
-            valley = wider.grown(FARTHER_VALLEY * wider.width() + NARROWEST);
+            valley = wider.grown(FARTHER_VALLEY * wider.width() + self.narrowest());
         }
         None
     }
@@ -310,6 +338,6 @@ impl<'a> Lines<'a> {
     fn is_bowl(&self, xi: Interval, known: Interval) -> bool {
         let xi = self.gap.feet(xi)[0];
         let valley = self.valley_of(known, |eta| self.gap.plane_slopes(xi, eta));
-        valley.is_some_and(|(valley, _)| self.gap.is_bowl(xi, valley, SHALLOW_VALLEY))
+        valley.is_some_and(|(valley, _)| self.gap.is_bowl(xi, valley, self.gap.roundings(SHALLOW_VALLEY)))
     }
 }

@@ -7,18 +7,18 @@ use crate::numerics::interval::Interval;
 use crate::numerics::roots::bracketed;
 use crate::patch::turning_points;
 
-/// Depth \[mm\] up to which a part of the patch, or what parts it, does not count: some roundings of the bodies' coordinates.
-const SHALLOW: f64 = 1e-12;
+/// Depth, in roundings of R, up to which a part of the patch, or what parts it, does not count: some of the bodies' coordinates.
+pub(super) const SHALLOW: f64 = 10.0;
 
-/// Difference \[mm\] up to which one least gap of several may be taken for the least of all.
-const LEVEL: f64 = 1e-10;
+/// Difference, in roundings of R, up to which one least gap of several may be taken for the least of all.
+pub(super) const LEVEL: f64 = 1000.0;
 
 /// Width, as a share of the first range, up to which a range is not halved again: a body ends or steps there.
 const SHORTEST: f64 = 1e-14;
 
 /// Width, as a share of the first range, up to which a range without C is not halved again where no bounds are known: a surface steps or
 /// stands upright there, normals of a roller meet a sheet of the wheel that others hide from C, or a body is missing at both ends.
-const UNKNOWN: f64 = 1.0 / 512.0;
+pub(super) const UNKNOWN: f64 = 1.0 / 512.0;
 
 /// Number of ranges after which none is halved again: a hundred times those of usual pairs.
 const MOST_RANGES: usize = 1 << 14;
@@ -167,7 +167,9 @@ impl LeastGap<'_, '_> {
             } else {
                 self.rises_from_c([&a, &b]) || {
                     let (slopes, depths) = self.depths([&a, &b], self.valley([&a, &b]));
-                    let higher = least.is_some_and(|least| depths.low >= least.depth.high - LEVEL);
+                    let higher = least.is_some_and(|least| {
+                        depths.low >= least.depth.high - self.lines.gap.roundings(LEVEL)
+                    });
                     self.is_unknown(slopes, [&a, &b]) || higher || is_monotone(slopes)
                 }
             };
@@ -177,7 +179,7 @@ impl LeastGap<'_, '_> {
             }
         }
         let least = least?;
-        if let Some(c) = c.filter(|c| c.depth.low <= least.depth.high + SHALLOW) {
+        if let Some(c) = c.filter(|c| c.depth.low <= least.depth.high + self.lines.gap.roundings(SHALLOW)) {
             return Some(c.xi);
         }
         Some(self.turn_near(least).unwrap_or(least.xi))
@@ -195,11 +197,9 @@ impl LeastGap<'_, '_> {
 
     /// Parts the range where the least gap may step. Right of such a place, a part begins beside it.
     fn ranges(&self) -> Vec<Interval> {
-        let beside = |low: f64| if low == self.over.low { low } else { low.next_up() };
-        self.over
-            .parts(self.lines.gap.torn(self.over))
-            .map(|part| Interval::new(beside(part.low), part.high))
-            .collect()
+        let torn = self.lines.gap.torn(Interval::ALL);
+        let beside = |low: f64| if torn.contains(&low) { low.next_up() } else { low };
+        self.over.parts(torn.clone()).map(|part| Interval::new(beside(part.low), part.high)).collect()
     }
 
     /// Returns the middle between two places; `None` where they are too close together, or too many before them, to part them.
@@ -221,7 +221,8 @@ impl LeastGap<'_, '_> {
         let lowest = valley.as_ref().map(|(valley, _)| *valley);
         let (slopes, Interval { low, high }) = self.depths([a, b], valley);
         let unknown = self.is_unknown(slopes, [a, b]);
-        let (all_out, all_in) = (unknown || low > -SHALLOW, unknown || high < SHALLOW);
+        let shallow = self.lines.gap.roundings(SHALLOW);
+        let (all_out, all_in) = (unknown || low > -shallow, unknown || high < shallow);
         let is_bowl = || lowest.is_some_and(|lowest| self.is_bowl([a, b], lowest));
         match inside {
             [true, true] => (all_in || is_bowl()).then_some(Between::Inside),
@@ -245,7 +246,7 @@ impl LeastGap<'_, '_> {
     fn is_bowl(&self, [a, b]: [&LowestPlace; 2], valley: Interval) -> bool {
         let gap = &self.lines.gap;
         let free = gap.is_over_plane() && self.window.holds(valley);
-        free && gap.is_bowl(Interval::new(a.xi, b.xi), valley, SHALLOW_VALLEY)
+        free && gap.is_bowl(Interval::new(a.xi, b.xi), valley, gap.roundings(SHALLOW_VALLEY))
     }
 
     /// Whether C, one of two places, is proved to be the lowest between them: it is a stationary place of s, and where s is not below 0 no
@@ -326,6 +327,15 @@ impl LeastGap<'_, '_> {
         None
     }
 
+    /// Returns ξ or σ and η \[mm\] of the least gap next to a place that is nearly the least: that place if nothing next to it is lower.
+    pub(in crate::patch) fn least_near(&mut self, [xi, eta]: [f64; 2]) -> [f64; 2] {
+        let known = self.lines.gap.or_infinite(xi, eta);
+        let near = self.lowest_place(xi, eta);
+        let turn = self.turn_near(near).unwrap_or(xi);
+        let place = self.lowest_place(turn, near.eta);
+        if place.depth.high <= known { [turn, self.window.nearest(place.eta)] } else { [xi, eta] }
+    }
+
     /// Returns the ξ or σ \[mm\] next to a place at which the least gap turns from falling to rising, unless it is larger there.
     fn turn_near(&mut self, near: LowestPlace) -> Option<f64> {
         let mut slope = |xi: f64| {
@@ -386,7 +396,7 @@ fn is_monotone(slopes: Interval) -> bool {
 }
 
 /// Returns the least value that a function may have over a width if its values at both ends and bounds of its slope are known.
-fn least_between([a, b]: [f64; 2], width: f64, slopes: Interval) -> f64 {
+pub(super) fn least_between([a, b]: [f64; 2], width: f64, slopes: Interval) -> f64 {
     let Interval { low, high } = slopes;
     // The lowest lines through both ends; a bound that is infinite leaves the other line.
     let place = ((b - high * width - a) / (low - high)).clamp(0.0, width);
@@ -426,8 +436,13 @@ mod tests {
                 .flat_map(|skew| [(skew, Reference::Plane), (skew, Reference::Rail)])
             {
                 let placement = pair.placed(rail_x, wheel_x, skew)?;
-                let mut slicer = Slicer::over(&placement, 0.1, reference);
-                let over = slicer.reach().expect("bodies over each other").cut(Interval::symmetric(25.0));
+                let mut slicer = Slicer::over(&placement, 0.1, (reference, Interval::ALL));
+                let over = slicer
+                    .lines
+                    .as_ref()
+                    .and_then(|lines| lines.gap.reach())
+                    .expect("bodies over each other")
+                    .cut(Interval::symmetric(25.0));
                 let mut least = slicer.least_gap(over, Interval::ALL).expect("a skewed wheel");
                 let (whole, mut known) = (least.ranges(), 0);
                 let cells =
@@ -446,11 +461,11 @@ mod tests {
                         (0..=PLACES).map(|k| least.lowest_place(cell.step(k, PLACES), 0.0).depth.high);
                     let places: Vec<f64> = places.collect();
                     for depth in &places {
-                        assert!(depths.grown(SHALLOW).contains(*depth), "{name}: {depth} beyond {depths:?}");
+                        assert!(depths.grown(1e-12).contains(*depth), "{name}: {depth} beyond {depths:?}");
                     }
                     for three in places.windows(3).filter(|_| convex) {
                         let bend = three[0] - 2.0 * three[1] + three[2];
-                        assert!(bend > -4.0 * SHALLOW, "{name}: {bend} where the least gap is convex");
+                        assert!(bend > -4e-12, "{name}: {bend} where the least gap is convex");
                     }
                 }
                 assert!(known > RANGES, "{rail_x}, {skew}, {reference:?}: {known}");

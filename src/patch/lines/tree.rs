@@ -94,19 +94,34 @@ impl<'a> ProfileTree<'a> {
         [first, pieces.partition_point(|piece| piece.xi.low <= over.high)]
     }
 
+    /// Returns bounds of all points over a range of abscissae \[mm\], wherever the profile ends or steps in it; `None` where it has none.
+    pub(super) fn over_all(&self, range: Interval) -> Option<ProfileBounds> {
+        let [first, end] = self.pieces(range);
+        (first < end).then(|| self.hull(range, [first, end]))
+    }
+
     /// Returns bounds over a range of abscissae \[mm\]; `None` where the profile ends or steps in it.
     pub(super) fn over(&self, range: Interval) -> Option<ProfileBounds> {
-        let (pieces, [first, end]) = (&self.section.pieces, self.pieces(range));
-        let steps = &self.section.steps;
+        let pieces = self.pieces(range);
+        self.holds(range, pieces).then(|| self.hull(range, pieces))
+    }
+
+    /// Whether the profile neither ends nor steps in a range of abscissae \[mm\].
+    pub(super) fn is_whole(&self, range: Interval) -> bool {
+        self.holds(range, self.pieces(range))
+    }
+
+    fn holds(&self, range: Interval, [first, end]: [usize; 2]) -> bool {
+        let (pieces, steps) = (&self.section.pieces, &self.section.steps);
         let torn = steps.get(steps.partition_point(|step| *step <= first)).is_some_and(|step| *step < end);
         // A range without a number, as NaN makes it, has no bounds.
-        let held = first < end && pieces[first].xi.low <= range.low && range.high <= pieces[end - 1].xi.high;
-        if torn || !held {
-            return None;
-        }
-        let part = |k: usize| self.part(k, range.cut(pieces[k].xi));
+        !torn && first < end && pieces[first].xi.low <= range.low && range.high <= pieces[end - 1].xi.high
+    }
+
+    fn hull(&self, range: Interval, [first, end]: [usize; 2]) -> ProfileBounds {
+        let part = |k: usize| self.part(k, range.cut(self.section.pieces[k].xi));
         let hull = part(first);
-        Some(if end - first == 1 { hull } else { hull.hull(part(end - 1)).hull(self.of(first + 1, end - 1)) })
+        if end - first == 1 { hull } else { hull.hull(part(end - 1)).hull(self.of(first + 1, end - 1)) }
     }
 
     /// Returns bounds over a part of a piece \[mm\].
@@ -148,11 +163,14 @@ impl<'a> ProfileTree<'a> {
         let part = |k: usize| {
             let (piece, whole) = (&pieces[k], self.nodes[self.nodes.len() / 2 + k]);
             let part = range.cut(piece.xi);
-            let bulge = whole.slopes.width() * part.width() / 4.0;
-            if !bulge.is_finite() || part.width() > NEARLY_WHOLE * piece.xi.width() {
+            if part.width() > NEARLY_WHOLE * piece.xi.width() {
                 return whole.heights;
             }
-            let branch = &self.section.branches[piece.branch];
+            let (branch, bulge) =
+                (&self.section.branches[piece.branch], whole.slopes.width() * part.width() / 4.0);
+            if whole.slopes.width() >= STRAIGHT {
+                return whole.heights.cut(branch.height_bounds(part));
+            }
             whole.heights.cut(Interval::around(part.ends().map(|xi| branch.height(xi))).grown(bulge))
         };
         match end - first.min(end) {

@@ -8,10 +8,12 @@
 //!
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
+use super::slices::{Lane, LaneRow, LineSlice, SlicedLine, refined};
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::divided::lines_divide;
 use crate::patch::level::{Level, joints};
+use crate::patch::lines::line::CrossingKind;
 use crate::patch::window::Window;
 use crate::placement::Placement;
 
@@ -44,18 +46,11 @@ const POINTS: usize = 12;
 /// How far these points go beyond both ends of the interval, as a share of its width.
 const BEYOND: f64 = 0.25;
 
-/// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: nearer to a tip the rounding of s makes intervals
-/// come and go, and bands of no length.
-const NEAREST: f64 = 1e-10;
-
-/// Most lines: where s is noise of the size of δ, intervals come and go on every line.
-const MOST_LINES: usize = 20_000;
-
-/// Relative accuracy of the interpolated boundary: a spline across the rail bends anew in every cell.
-pub(in crate::patch) const SMOOTH: f64 = 1e-9;
-
 /// Largest depth \[mm\] of an interval or a dip that counts as rounding of s.
 const ROUNDING: f64 = 1e-11;
+
+/// Distance of two lines, in mm or as a share of ξ, at which none is laid between them: slices begin, end, divide or join there.
+const NEAREST: f64 = 1e-10;
 
 /// Accuracy of an edge \[mm\].
 const TO_EDGE: f64 = 1e-9;
@@ -64,21 +59,6 @@ pub(super) const TO_LOWEST: f64 = 1e-6;
 
 /// How far an edge is looked for from its estimate, as shares of half the interval's length, the nearest first.
 const BESIDE_EDGE: [f64; 3] = [2e-3, 0.02, 0.1];
-
-/// A slice of the patch on a line, with its lowest place.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LineSlice {
-    pub eta: Interval,
-    /// Where s is least in it, and that s \[mm\].
-    pub lowest: [f64; 2],
-}
-
-/// A line of constant ξ with its slices, by ascending η.
-#[derive(Debug, Clone)]
-pub(super) struct SlicedLine {
-    pub xi: f64,
-    pub slices: Vec<LineSlice>,
-}
 
 /// The slices of a placed pair at one approach, from samples.
 #[derive(Debug)]
@@ -89,12 +69,10 @@ pub(crate) struct BySamples<'a> {
     step: f64,
     /// How far along the track from C the patch is looked for \[mm\].
     farthest: f64,
-    /// The lines of every band.
-    pub(super) lanes: Vec<Vec<(f64, LineSlice)>>,
 }
 
 impl<'a> BySamples<'a> {
-    /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples, and not from roots or valleys.
+    /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples.
     pub(crate) fn apply_to(placement: &Placement, approach: f64) -> bool {
         placement.lofted().is_some() || lines_divide(placement, approach)
     }
@@ -105,7 +83,7 @@ impl<'a> BySamples<'a> {
         let half = (2.0 * placement.rolling_radius() * approach.max(0.0)).sqrt();
         let step = (SHARE * half).clamp(STEPS[0], STEPS[1]);
         let farthest = FARTHEST.max(FARTHEST_SHARE * half);
-        Self { level, approach, step, farthest, lanes: Vec::new() }
+        Self { level, approach, step, farthest }
     }
 
     /// Finds the lines over a window, from one end to the other of the range of ξ over which the rail or the body that varies has a
@@ -134,22 +112,30 @@ impl<'a> BySamples<'a> {
         }
         all.sort_by(f64::total_cmp);
         let lines: Vec<SlicedLine> = all.into_iter().map(|xi| self.whole_line(xi, eta)).collect();
-        self.refined(lines)
+        refined(self, lines, nearest, |samples, pair| answer(pair, samples.step), Self::between)
+    }
+
+    /// Lays a line half-way between two.
+    fn between(&mut self, [last, next]: [&SlicedLine; 2]) -> SlicedLine {
+        let mut samples = Vec::new();
+        last.slices.iter().chain(&next.slices).for_each(|found| spread(found.eta, &mut samples));
+        samples.sort_by(f64::total_cmp);
+        samples.dedup();
+        self.line(last.xi + 0.5 * (next.xi - last.xi), &samples)
     }
 
     /// Returns both ends of the slice of a lane at ξ; `None` outside the patch.
-    pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<usize>) -> Option<[f64; 2]> {
+    pub(in crate::patch) fn edges(&mut self, xi: f64, lane: Option<&Lane>) -> Option<[f64; 2]> {
         let near = self.edges_between(xi, lane);
         near.or_else(|| self.interval(xi, lane).map(|found| found.eta.ends()))
     }
 
     /// Finds both ends of the slice of a lane at ξ near their estimate from the lines on both sides; `None` where they are farther off.
-    fn edges_between(&mut self, xi: f64, lane: Option<usize>) -> Option<[f64; 2]> {
-        let rows = self.lanes.get(lane?)?;
-        let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
+    fn edges_between(&mut self, xi: f64, lane: Option<&Lane>) -> Option<[f64; 2]> {
+        let [LaneRow { xi: from, slice: a, .. }, LaneRow { xi: to, slice: b, .. }] = lane?.beside(xi)?;
         let share = ((xi - from) / (to - from)).clamp(0.0, 1.0);
         let square = |of: &LineSlice| (0.5 * of.eta.width()).powi(2);
-        let half = (square(&a) + share * (square(&b) - square(&a))).sqrt();
+        let half = (square(a) + share * (square(b) - square(a))).sqrt();
         let middle = a.eta.middle() + share * (b.eta.middle() - a.eta.middle());
         let approach = self.approach;
         let mut found = [0.0; 2];
@@ -165,13 +151,12 @@ impl<'a> BySamples<'a> {
 
     /// Returns η of the least s of a lane at ξ \[mm\]; of the deepest interval without a lane. Where there is no interval it is that of the
     /// lane's nearest line, or 0.
-    pub(in crate::patch) fn lowest(&mut self, xi: f64, lane: Option<usize>) -> f64 {
+    pub(in crate::patch) fn lowest(&mut self, xi: f64, lane: Option<&Lane>) -> f64 {
         if let Some(found) = self.interval(xi, lane) {
             return found.lowest[0];
         }
-        let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else { return 0.0 };
-        let [a, b] = beside(rows, xi).map(|k| rows[k]);
-        if (xi - a.0).abs() <= (b.0 - xi).abs() { a.1.lowest[0] } else { b.1.lowest[0] }
+        let Some([a, b]) = lane.and_then(|lane| lane.beside(xi)) else { return 0.0 };
+        (if (xi - a.xi).abs() <= (b.xi - xi).abs() { a } else { b }).slice.lowest[0]
     }
 
     /// Returns how far along the track the patch is looked for \[mm\].
@@ -185,12 +170,12 @@ impl<'a> BySamples<'a> {
     }
 
     /// Finds the interval of a lane at ξ, that nearest to those of the lines on both sides; without a lane the deepest one.
-    fn interval(&mut self, xi: f64, lane: Option<usize>) -> Option<LineSlice> {
-        let Some(rows) = lane.and_then(|lane| self.lanes.get(lane)) else {
+    fn interval(&mut self, xi: f64, lane: Option<&Lane>) -> Option<LineSlice> {
+        let Some([before, after]) = lane.and_then(|lane| lane.beside(xi)) else {
             let found = self.whole_line(xi, self.within());
             return found.slices.into_iter().min_by(|a, b| a.lowest[1].total_cmp(&b.lowest[1]));
         };
-        let [(from, a), (to, b)] = beside(rows, xi).map(|k| rows[k]);
+        let ([from, to], [a, b]) = ([before.xi, after.xi], [before.slice, after.slice]);
         let share = if to > from { ((xi - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
         let near = a.eta.middle() + share * (b.eta.middle() - a.eta.middle());
         let mut samples = Vec::new();
@@ -252,7 +237,11 @@ impl<'a> BySamples<'a> {
             let inside = s < approach;
             if inside && open.is_none() {
                 let from = if k == 0 { eta } else { self.edge(xi, eta, points[k - 1][0]) };
-                open = Some(LineSlice { eta: Interval::new(from, eta), lowest: [eta, s] });
+                open = Some(LineSlice {
+                    eta: Interval::new(from, eta),
+                    kinds: [CrossingKind::Root; 2],
+                    lowest: [eta, s],
+                });
             }
             if let Some(found) = open.as_mut().filter(|_| inside) {
                 found.eta.high = eta;
@@ -267,7 +256,7 @@ impl<'a> BySamples<'a> {
         }
         slices.extend(open);
         slices.retain(|found| approach - found.lowest[1] > ROUNDING);
-        SlicedLine { xi, slices }
+        SlicedLine { xi, slices, crossings: Vec::new(), follows: false }
     }
 
     /// Finds the end of an interval between a place inside and one outside.
@@ -275,61 +264,43 @@ impl<'a> BySamples<'a> {
         let approach = self.approach;
         change(|eta| self.separation(xi, eta) - approach, [inside, outside], TO_EDGE)
     }
+}
 
-    /// Adds lines until the intervals of neighbours correspond one to one, or nothing lies between the lines.
-    fn refined(&mut self, lines: Vec<SlicedLine>) -> Vec<SlicedLine> {
-        let mut out: Vec<SlicedLine> = Vec::with_capacity(2 * lines.len());
-        let mut waiting: Vec<SlicedLine> = lines.into_iter().rev().collect();
-        while let Some(next) = waiting.pop() {
-            let Some(last) = out.last().filter(|last| !answer(last, &next, self.step)) else {
-                out.push(next);
-                continue;
-            };
-            if next.xi - last.xi <= nearest(last.xi, next.xi) || out.len() > MOST_LINES {
-                out.push(next);
-                continue;
-            }
-            let mut samples = Vec::new();
-            last.slices.iter().chain(&next.slices).for_each(|found| spread(found.eta, &mut samples));
-            samples.sort_by(f64::total_cmp);
-            samples.dedup();
-            let between = self.line(last.xi + 0.5 * (next.xi - last.xi), &samples);
-            waiting.extend([next, between]);
-        }
-        out
+impl BySamples<'_> {
+    /// Finds ξ \[mm\] of the least s of a lane: where s turns next to the deepest of its lines.
+    pub(in crate::patch) fn least(&mut self, lane: &Lane) -> Option<f64> {
+        let depth = |row: &LaneRow| row.slice.lowest[1];
+        let order = |p: &usize, q: &usize| depth(&lane.rows[*p]).total_cmp(&depth(&lane.rows[*q]));
+        let at = (0..lane.rows.len()).min_by(order)?;
+        let deepest = &lane.rows[at];
+        let (Some(from), Some(to)) =
+            (at.checked_sub(1).and_then(|k| lane.rows.get(k)), lane.rows.get(at + 1))
+        else {
+            return Some(deepest.xi);
+        };
+        let slope = |xi: f64| {
+            let eta = self.lowest(xi, Some(lane));
+            self.level.gradient(xi, eta)[0]
+        };
+        let turn = change(slope, [from.xi, to.xi], TO_LOWEST);
+        // A crease, where s does not turn, may be deeper.
+        let eta = self.lowest(turn, Some(lane));
+        Some(if self.separation(turn, eta) < depth(deepest) { turn } else { deepest.xi })
     }
 }
 
-/// Returns the distance of two lines at which none is laid between them \[mm\].
-fn nearest(from: f64, to: f64) -> f64 {
-    NEAREST * from.abs().max(to.abs()).max(1.0)
-}
-
-/// Lists the pairs of overlapping intervals of two lines.
-pub(super) fn links(a: &SlicedLine, b: &SlicedLine) -> Vec<[usize; 2]> {
-    let all = (0..a.slices.len()).flat_map(|i| (0..b.slices.len()).map(move |j| [i, j]));
-    all.filter(|&[i, j]| a.slices[i].eta.overlaps(b.slices[j].eta)).collect()
-}
-
-/// Tells whether the intervals of two lines correspond one to one, and none has an end that moves by more than a step \[mm\] and
+/// Returns whether the intervals of two lines correspond one to one, and none has an end that moves by more than a step \[mm\] and
 /// [`STEEPEST`] times the distance of the lines: another interval may begin and join it in between.
-fn answer(a: &SlicedLine, b: &SlicedLine, step: f64) -> bool {
+fn answer([a, b]: [&SlicedLine; 2], step: f64) -> bool {
     let (count, farthest) = (a.slices.len(), step.max(STEEPEST * (b.xi - a.xi)));
     let near = |[i, j]: &[usize; 2]| {
         let [from, to] = [a.slices[*i].eta, b.slices[*j].eta];
         i == j && (0..2).all(|end| (to[end] - from[end]).abs() <= farthest)
     };
     count == b.slices.len() && {
-        let links = links(a, b);
+        let links = b.links(a);
         links.len() == count && links.iter().all(near)
     }
-}
-
-/// Returns the indices of the rows on both sides of ξ.
-fn beside(rows: &[(f64, LineSlice)], xi: f64) -> [usize; 2] {
-    let last = rows.len() - 1;
-    let after = rows.partition_point(|row| row.0 < xi).min(last);
-    [after.saturating_sub(1), after]
 }
 
 /// Adds points over an interval of η and beyond its ends.
@@ -348,6 +319,11 @@ fn places(over: Interval, step: f64) -> Vec<f64> {
     out.sort_by(f64::total_cmp);
     out.dedup();
     out
+}
+
+/// Returns the distance of two lines at which none is laid between them \[mm\].
+fn nearest(from: f64, to: f64) -> f64 {
+    NEAREST * from.abs().max(to.abs()).max(1.0)
 }
 
 #[cfg(test)]
