@@ -39,13 +39,12 @@ pub struct Feasibility {
 /// where each body has one outer height, decides whether the bodies overlap. Where s is negative and the vertical gap is not, or the
 /// other way round, the result is the least vertical gap with its place.
 ///
-/// Under a skewed wheel s alone decides. On a rail the least s of every line of constant ξ is where the wheel is parallel to η, or on the
-/// circle of a kink or end: places in closed form. Along them s is searched between joints for its turning points, up to |η| = 0.65 of
-/// the axle's distance. Exact to rounding, unless s turns twice within a quarter of a stretch between joints: see the docs on numerics.
+/// Under a skewed wheel s alone decides. Bounds of s and of its slopes over boxes leave the places at which it may be least, up to
+/// |η| = 0.65 of the axle's distance, and find the least s to 1000 roundings of R.
 ///
 /// Where the patch is found from samples, so is the least s: [`Patch::new`].
 ///
-/// Cost: some ten nanoseconds a joint without skew, some hundred with skew.
+/// Cost: some ten nanoseconds a joint without skew, some hundred microseconds with skew.
 ///
 /// # Examples
 /// ```

@@ -97,9 +97,9 @@ impl Patch {
     /// have holes.
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. A part is missed only where it is
-    /// shallower than 1e-12 mm; of several slices of a line on a rail where it is shallower than 1e-8 mm and narrower than 1e-6 R along ξ; and on
-    /// a roller beside a step or an upright place of a body within 1/512 of the range of ξ, and beside a hollow kink of a skewed wheel, where it
-    /// is shallower than 1e-4 mm.
+    /// shallower than 1e-12 mm; of several slices of a line on a rail where it is shallower than 1e-8 mm and narrower than 1e-6 R along ξ; beside
+    /// an upright place of a body, and on a roller a step, within 1/512 of the range of ξ; and on a roller beside a hollow kink of a skewed
+    /// wheel, where it is shallower than 1e-4 mm.
     ///
     /// The patch is found from samples where a body varies, and on a roller where a hollow kink gives the lines two lowest places that may
     /// differ by more than that, or where lines leave a tilted body over its end within the patch and enter it again.
