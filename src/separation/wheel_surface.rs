@@ -240,6 +240,10 @@ impl<'a> WheelSurface<'a> {
     /// Finds the point with sagitta e \[mm\] over a span: on an arc or line without iteration, on a polynomial by Newton's steps.
     #[inline]
     pub fn point(&self, xi: f64, span: &Span, e: f64) -> SagittaPoint {
+        if e == span.e.low {
+            // At a vertical end no chord has a slope.
+            return SagittaPoint { e, rise: 0.0, w: span.w, u: span.u.low };
+        }
         let nowhere = SagittaPoint { e, rise: f64::NAN, w: f64::NAN, u: f64::NAN };
         self.points(&[xi], &self.lane(span), &[e]).map_or(nowhere, SagittaPoint::from)
     }
@@ -356,13 +360,16 @@ impl<'a> WheelSurface<'a> {
     ///
     /// Method: Newton's step on u(e) = e (2w + e); if it does not settle, a bracketed root.
     pub fn point_at(&self, xi: f64, span: &Span, u: f64) -> Option<SagittaPoint> {
-        let point = match self.points_at(&[xi], &self.lane(span), &[u]) {
-            Some(points) => points.into(),
-            None => self.point(
-                xi,
-                span,
-                bracketed(|e| self.point(xi, span, e).u - u, span.e.low, self.end(span))?,
-            ),
+        let found = self.points_at(&[xi], &self.lane(span), &[u]).map(SagittaPoint::from);
+        // Where u turns, steps may leave the span.
+        let within = span.e.grown(f64::EPSILON.sqrt() * span.w);
+        let point = match found.filter(|point| within.contains(point.e)) {
+            Some(point) => point,
+            None => {
+                // Up to the axle's height no sagitta is longer than η.
+                let end = self.end(span).min(u.sqrt());
+                self.point(xi, span, bracketed(|e| self.point(xi, span, e).u - u, span.e.low, end)?)
+            }
         };
         Some(point).filter(|point| point.w > 0.0)
     }
