@@ -137,6 +137,12 @@ impl<'a> Raised<'a> {
         self.point(sigma, eta).map_or(f64::NAN, |(at, point)| self.height(&at, &point))
     }
 
+    /// Returns whether the wheel has a surface up to its axle's height over the raised point at η.
+    pub(super) fn has_surface(&mut self, sigma: f64, eta: f64) -> bool {
+        let xi = self.at(sigma).xi();
+        self.relief.has_surface(xi, eta)
+    }
+
     fn height(&self, at: &RaisedPoint, point: &ReliefPoint) -> f64 {
         self.relief.height_over(at.foot, at.moved[0], point)
     }

@@ -20,7 +20,9 @@ pub struct Relief<'a> {
     /// The surface whose height is measured.
     pub wheel: WheelSurface<'a>,
     /// The spans of the last column.
-    pub spans: Vec<Span>,
+    spans: Vec<Span>,
+    /// ξ′ \[mm\] of that column, and u \[mm²\] up to which they reach.
+    spanned: [f64; 2],
     /// The directions of the surface.
     pub skew: Skew,
 }
@@ -85,6 +87,7 @@ impl<'a> Relief<'a> {
             below: placement.lofted_rail().map_or(&placement.rail().section, FramedLoft::plane),
             wheel: WheelSurface::new(placement),
             spans: Vec::with_capacity(4),
+            spanned: [f64::NAN; 2],
             skew: Skew::new(placement),
         }
     }
@@ -101,9 +104,23 @@ impl<'a> Relief<'a> {
         if u.is_nan() {
             return None;
         }
-        self.wheel.spans(xi_w, u, &mut self.spans);
-        let span = self.spans[WheelSurface::span_at(&self.spans, u)?];
+        let span = self.span(xi_w, u)?;
         Some(ReliefPoint { xi_w, shift, eta_w, span, point: self.wheel.point_at(xi_w, &span, u)? })
+    }
+
+    /// Returns whether a column up to the axle's height holds the surface over (ξ, η).
+    pub fn has_surface(&mut self, xi: f64, eta: f64) -> bool {
+        let [shift, eta_w] = self.skew.own(xi, eta);
+        self.span(xi + shift, eta_w * eta_w).is_some()
+    }
+
+    /// Returns the span of the column at ξ′ \[mm\] that holds u \[mm²\]; `None` where there is no surface.
+    pub fn span(&mut self, xi_w: f64, u: f64) -> Option<Span> {
+        if self.spanned[0] != xi_w || self.spanned[1] < u {
+            self.wheel.spans(xi_w, u, &mut self.spans);
+            self.spanned = [xi_w, u];
+        }
+        WheelSurface::span_at(&self.spans, u).map(|k| self.spans[k])
     }
 
     /// Computes the relief at a point \[mm\]; NaN where there is no surface, and off the lower body's profile.
@@ -172,7 +189,7 @@ impl<'a> Relief<'a> {
                 }
                 *s = base + found.map_or(f64::NAN, |k| self.rise(xi, &spans[k], u));
             }
-            self.spans = spans;
+            (self.spans, self.spanned) = (spans, [xi, u_max]);
             return;
         }
         for (s, &eta) in out.iter_mut().zip(eta) {
@@ -198,8 +215,10 @@ impl<'a> Relief<'a> {
     /// a hole; the result is NaN if the column has no surface up to `u_max` \[mm²\].
     pub fn parabola(&mut self, xi: f64, shift: f64, u_max: f64) -> [f64; 3] {
         let xi_w = xi + shift;
+        self.spanned = [xi_w, 0.0];
         self.wheel.spans(xi_w, 0.0, &mut self.spans);
         if self.spans.is_empty() {
+            self.spanned = [xi_w, u_max];
             self.wheel.spans(xi_w, u_max, &mut self.spans);
         }
         let Some(span) = self.spans.first() else { return [f64::NAN; 3] };

@@ -36,10 +36,15 @@ pub(in crate::patch) fn answer(lines: &mut Lines<'_>, pair: [&SlicedLine; 2], wi
     }
     let held: Vec<Interval> = a.iter().zip(b).map(|(a, b)| held(lines, xi, a.kind, [a.eta, b.eta])).collect();
     let is_upright = |(crossing, held): (&Crossing, &Interval)| {
-        let is_end = crossing.sides.iter().any(|side| side.is_infinite());
-        crossing.kind == CrossingKind::Root && (is_end || lines.gap.torn_slopes(xi, *held).is_none())
+        let ends =
+            crossing.kind == CrossingKind::Root && crossing.sides.iter().any(|side| side.is_infinite());
+        crossing.kind != CrossingKind::Limit && (ends || lines.gap.torn_slopes(xi, *held).is_none())
     };
-    let is_unknown = a.iter().zip(&held).any(is_upright);
+    let is_known = |(crossing, held): (&Crossing, &Interval)| {
+        crossing.kind != CrossingKind::Root || passes_once(lines, xi, *held, crossing)
+    };
+    let is_unknown = a.iter().zip(&held).any(is_upright)
+        && a.iter().zip(&held).all(|crossing| is_upright(crossing) || is_known(crossing));
     let short = UNKNOWN * lines.gap.reach().map_or(0.0, Interval::width);
     if xi.width() <= NEAR * lines.gap.placement().rolling_radius()
         || (is_unknown && xi.width() <= short && is_between(lines, pair, window))
@@ -82,11 +87,7 @@ fn answer_at_crossings(lines: &mut Lines<'_>, answering: &Answering<'_>) -> bool
         let both = [&a[first..=k], &b[first..=k]];
         let good = match a[first].kind {
             CrossingKind::Limit if k == first => true,
-            CrossingKind::Root if k == first => {
-                let sign = if a[first].inside()[0] { 1.0 } else { -1.0 };
-                let slopes = lines.gap.slopes(*xi, box_of, Interval::ALL);
-                slopes.is_some_and(|slopes| (slopes.across * sign).low > 0.0)
-            }
+            CrossingKind::Root if k == first => passes_once(lines, *xi, box_of, &a[first]),
             _ => keeps_order(lines, *xi, box_of, both),
         };
         if !good {
@@ -95,6 +96,13 @@ fn answer_at_crossings(lines: &mut Lines<'_>, answering: &Answering<'_>) -> bool
         k += 1;
     }
     true
+}
+
+/// Returns whether the gap is proved to slope one way along η over a box around a root.
+fn passes_once(lines: &Lines<'_>, xi: Interval, eta: Interval, root: &Crossing) -> bool {
+    let sign = if root.inside()[0] { 1.0 } else { -1.0 };
+    let slopes = lines.gap.slopes(xi, eta, Interval::ALL);
+    slopes.is_some_and(|slopes| (slopes.across * sign).low > 0.0)
 }
 
 /// Returns whether a box around rims and roots beside them holds these alone on every line.

@@ -153,6 +153,14 @@ impl<'a> PatchGap<'a> {
         }
     }
 
+    /// Returns whether the bodies have surfaces at a place; on a wheel over a rail at less cost than G.
+    pub(super) fn has_surface(&mut self, xi: f64, eta: f64) -> bool {
+        match &mut self.of {
+            GapOf::Raised(raised) => raised.has_surface(xi, eta),
+            GapOf::Level(level) => !level.gap(xi, eta).is_nan(),
+        }
+    }
+
     /// Returns G \[mm\]; infinite where a body has no surface.
     pub(super) fn or_infinite(&mut self, xi: f64, eta: f64) -> f64 {
         let gap = self.gap(xi, eta);
@@ -209,10 +217,13 @@ impl<'a> PatchGap<'a> {
         }
     }
 
-    /// As [`Self::slopes`], also where a surface ends or steps a rounding from the sides of the box; `None` along normals.
+    /// As [`Self::slopes`] whatever G is, but along normals also where a surface ends or steps a rounding from the sides of the box.
     pub(super) fn slopes_by_rounding(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
-        let known = self.has_plain_bounds();
-        known.then(|| self.slopes_of_parts(xi, eta, Torn::ByRounding)).flatten()
+        if self.has_plain_bounds() {
+            self.slopes_of_parts(xi, eta, Torn::ByRounding)
+        } else {
+            self.slopes(xi, eta, Interval::ALL)
+        }
     }
 
     /// As [`Self::slopes`], but along normals, for each part of surfaces that end or step in the box, continued over all of it.

@@ -1,10 +1,10 @@
 //! The slices of single lines of ξ, and the edges of a lane on any line.
 
 use super::Lines;
-use super::line::{Crossing, CrossingKind, crossings, held, rim_on};
+use super::line::{Crossing, CrossingKind, crossings, held, leaves, rim_on};
 use super::newton::newton_from;
 use crate::numerics::interval::Interval;
-use crate::numerics::roots::{bracketed, last_where};
+use crate::numerics::roots::bracketed;
 use crate::patch::fibres::{Lane, LaneRow, LineSlice, SlicedLine};
 
 /// Returns a line of ξ or σ with its slices inside a window.
@@ -80,8 +80,7 @@ pub(super) fn edge_between(
             if lines.gap.gap(xi, off) < 0.0 {
                 off = bracketed(|eta| lines.gap.across(xi, eta), on, off).unwrap_or(off);
             }
-            bracketed(|eta| lines.gap.gap(xi, eta), on, off)
-                .unwrap_or_else(|| last_where(|eta| lines.gap.gap(xi, eta) < 0.0, on, off))
+            leaves(lines, xi, [on, off])
         }
     }
 }

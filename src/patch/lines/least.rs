@@ -2,7 +2,7 @@
 
 use super::bounds::BoxSlopes;
 use super::lanes::edges_of;
-use super::line::{CrossingKind, beside, beside_rims, rim_on, rims_at, shortest_part, slopes_between};
+use super::line::{CrossingKind, beside, beside_rims, rim_on, rims_at, shortest_part};
 use super::ranges::{LEVEL, SHALLOW, least_between};
 use super::{BESIDE, Lines, SHALLOW_VALLEY};
 use crate::numerics::interval::Interval;
@@ -13,7 +13,7 @@ use crate::patch::fibres::Lane;
 const SETTLING: usize = 8;
 
 /// Most boxes that are looked at for a least gap.
-const MOST_BOXES: usize = 1 << 13;
+const MOST_BOXES: usize = 1 << 10;
 
 /// A box of ξ or σ and η that may hold the least gap.
 #[derive(Debug, Clone, Copy)]
@@ -190,7 +190,7 @@ pub(in crate::patch) fn lowest_within(lines: &mut Lines<'_>, xi: f64, over: Inte
     let shallow = lines.gap.roundings(SHALLOW);
     while let Some((eta, ends)) = waiting.pop() {
         let line = Interval::of(xi);
-        let slopes = slopes_between(lines, line, eta).map(|slopes| slopes.across);
+        let slopes = lines.gap.slopes_by_rounding(line, eta).map(|slopes| slopes.across);
         // Where no surface folds back, one that is missing at both ends of a part is missing all over it.
         let missing = ends.iter().all(|gap| gap.is_infinite());
         let settled = slopes.is_some_and(|across| {

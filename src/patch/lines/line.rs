@@ -66,15 +66,18 @@ pub(in crate::patch) fn crossings(lines: &mut Lines<'_>, xi: f64, window: Interv
     if first < 0.0 {
         found.push(limit(low, [f64::INFINITY, first]));
     }
-    for (eta, rim) in rims {
+    for (k, &(eta, rim)) in rims.iter().enumerate() {
         let sides = [-1.0, 1.0].map(|side| beside(lines, xi, eta, side));
         if low < eta - off {
             roots(lines, xi, (Interval::new(low, eta - off), over), &mut found);
         }
         low = low.max(eta + off);
-        found.extend(root_beside(lines, xi, eta, (-1.0, sides[0])));
+        // A root beyond the next rim is none of this side.
+        let before = rims[..k].last().map_or(f64::NEG_INFINITY, |rim| rim.0);
+        let after = rims.get(k + 1).map_or(f64::INFINITY, |rim| rim.0);
+        found.extend(root_beside(lines, xi, eta, (-1.0, sides[0])).filter(|root| before < root.eta));
         found.push(Crossing { eta, kind: CrossingKind::Rim(rim), sides });
-        found.extend(root_beside(lines, xi, eta, (1.0, sides[1])));
+        found.extend(root_beside(lines, xi, eta, (1.0, sides[1])).filter(|root| root.eta < after));
     }
     if low < over.high {
         roots(lines, xi, (Interval::new(low, over.high), over), &mut found);
@@ -172,7 +175,7 @@ fn roots(lines: &mut Lines<'_>, xi: f64, (part, over): (Interval, Interval), fou
     while let Some(LinePart { eta, ends }) = waiting.pop() {
         count += 1;
         let passes = (ends[0] < 0.0) != (ends[1] < 0.0);
-        let slopes = slopes_between(lines, Interval::of(xi), eta);
+        let slopes = lines.gap.slopes_by_rounding(Interval::of(xi), eta);
         let shortest = shortest_part(lines, over, slopes.is_some());
         match crossed(lines, xi, (LinePart { eta, ends }, slopes)) {
             Some(false) => continue,
@@ -189,11 +192,6 @@ fn roots(lines: &mut Lines<'_>, xi: f64, (part, over): (Interval, Interval), fou
             _ => {}
         }
     }
-}
-
-/// Returns bounds of the slopes of G over a part of a line between two rims, beside which rounding may end a surface.
-pub(super) fn slopes_between(lines: &Lines<'_>, line: Interval, eta: Interval) -> Option<BoxSlopes> {
-    lines.gap.slopes(line, eta, Interval::ALL).or_else(|| lines.gap.slopes_by_rounding(line, eta))
 }
 
 /// Returns the width \[mm\] down to which a part of a range of η is halved: where a surface stands upright no bounds are known, and halves
@@ -232,10 +230,19 @@ fn crossed(
 /// Returns the η \[mm\] at which the gap passes δ in a part of a line.
 fn root(lines: &mut Lines<'_>, xi: f64, LinePart { eta, ends }: LinePart) -> f64 {
     let [low, high] = eta.ends();
-    let smooth = ends.iter().all(|gap| gap.is_finite());
-    let root = if smooth { bracketed(|eta| lines.gap.gap(xi, eta), low, high) } else { None };
-    root.unwrap_or_else(|| {
-        let (on, off) = if ends[0] < 0.0 { (low, high) } else { (high, low) };
-        last_where(|eta| lines.gap.gap(xi, eta) < 0.0, on, off)
-    })
+    leaves(lines, xi, if ends[0] < 0.0 { [low, high] } else { [high, low] })
+}
+
+/// Returns the η \[mm\] at which a line leaves the patch between a place in it and one that is not: at a root of the gap, or where a
+/// surface ends.
+pub(super) fn leaves(lines: &mut Lines<'_>, xi: f64, [on, off]: [f64; 2]) -> f64 {
+    if let Some(root) = bracketed(|eta| lines.gap.gap(xi, eta), on, off) {
+        return root;
+    }
+    let end = last_where(|eta| lines.gap.has_surface(xi, eta), on, off);
+    if lines.gap.gap(xi, end) < 0.0 {
+        return end;
+    }
+    let root = bracketed(|eta| lines.gap.gap(xi, eta), on, end);
+    root.unwrap_or_else(|| last_where(|eta| lines.gap.gap(xi, eta) < 0.0, on, off))
 }

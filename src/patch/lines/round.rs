@@ -18,6 +18,9 @@ use crate::separation::wheel_surface::WheelSurface;
 /// Most times that bounds of distances from the axle are narrowed by those of the heights: each gains two digits.
 const NARROWINGS: usize = 6;
 
+/// Difference of the radii over a box, as a share of them, up to which they are narrowed no more than its ends ask for.
+const ALIKE: f64 = 0.125;
+
 /// Rounding of the places of surfaces, in roundings of the axle distance.
 const PLACE_ROUNDINGS: f64 = 64.0;
 
@@ -198,7 +201,8 @@ impl<'a> Round<'a> {
         let mut radii = self.radii.cut(self.radii_of(wide, self.tree.heights_around(wide)));
         let mut abscissae = self.abscissae(xi, eta, radii);
         for _ in 0..NARROWINGS {
-            if radii.is_empty() || self.tree.is_whole(abscissae) {
+            let alike = radii.width() <= ALIKE * radii.low;
+            if radii.is_empty() || (alike && self.tree.is_whole(abscissae)) {
                 break;
             }
             radii = radii.cut(self.radii_of(abscissae, self.tree.heights(abscissae)));

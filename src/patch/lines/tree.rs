@@ -11,7 +11,8 @@ const NARROW: f64 = 1e-9;
 /// Share of a piece from which on a part of it has the bounds of the whole.
 const NEARLY_WHOLE: f64 = 0.75;
 
-/// Difference of the slopes of a piece from which on its own bounds of heights are narrower than those from its slopes.
+/// Difference of the slopes of a piece from which on bounds of its parts' own slopes and heights are narrower than those from bounds over all
+/// of it.
 const STRAIGHT: f64 = 1.0;
 
 /// Bounds over a range of a profile.
@@ -126,7 +127,8 @@ impl<'a> ProfileTree<'a> {
 
     /// Returns bounds over a part of a piece \[mm\].
     ///
-    /// Method: from the middle of a polynomial on, the slope changes as bounds of ζ″ over the whole piece say.
+    /// Method: from the middle of a polynomial on, the slope changes as bounds of ζ″ over the whole piece say, unless it turns so far that
+    /// these say little.
     fn part(&self, index: usize, part: Interval) -> ProfileBounds {
         let (piece, whole) = (&self.section.pieces[index], self.nodes[self.nodes.len() / 2 + index]);
         if part.width() > NEARLY_WHOLE * piece.xi.width() {
@@ -136,10 +138,10 @@ impl<'a> ProfileTree<'a> {
         let (point, height) = branch.point(part.middle());
         let either_side = Interval::symmetric(part.width() / 2.0);
         let bend = match branch.shape {
-            BranchShape::Arc(_) => Interval::ALL,
-            BranchShape::Polynomial(_) => {
+            BranchShape::Polynomial(_) if whole.slopes.width() < STRAIGHT => {
                 *self.bends[index].get_or_init(|| branch.derivative_bounds(piece.xi)[1])
             }
+            _ => Interval::ALL,
         };
         let slopes = if whole.slopes.width() < NARROW {
             whole.slopes

@@ -3,7 +3,7 @@
 use super::points::{self, repeated};
 use crate::numerics::interval::Interval;
 use crate::numerics::lanes::Lanes;
-use crate::numerics::polynomial::{derivative, exact_values, range, value};
+use crate::numerics::polynomial::{bernstein, derivative, exact_values, range, value};
 use crate::numerics::twice::Twice;
 
 /// A curve (ξ(t), ζ(t)). If the contact point is at t = 0, ζ has neither a constant nor a linear term; it then keeps its
@@ -69,9 +69,13 @@ impl PolynomialBranch {
     }
 
     /// As [`Self::rates`] over an interval of t.
+    ///
+    /// Method: in Bernstein's form a quotient of two polynomials is a mean of those of their coefficients if the lower ones are all positive.
     fn rates_over(&self, t: Interval) -> ([Interval; 2], Interval) {
-        let rates @ [run, rise] = [&self.xi, &self.zeta].map(|c| range(&derivative(c), t));
-        (rates, if run.low <= 0.0 { Interval::ALL } else { rise.quotient(run) })
+        let rates = [&self.xi, &self.zeta].map(|c| bernstein(&derivative(c), t));
+        let bounds = [&rates[0], &rates[1]].map(|c| Interval::around(c.iter().copied()));
+        let quotients = rates[0].iter().zip(&rates[1]).map(|(run, rise)| rise / run);
+        (bounds, if bounds[0].low <= 0.0 { Interval::ALL } else { Interval::around(quotients) })
     }
 
     /// Returns bounds of ζ \[mm\] over an interval of ξ \[mm\].

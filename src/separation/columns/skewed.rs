@@ -221,8 +221,7 @@ impl SkewedColumn<'_, '_> {
             (shift[k], u[k]) = (along, across * across);
         }
         let xi_w = lanes(|k| xi + shift[k]);
-        relief.wheel.spans(xi_w[MANY / 2], u[MANY / 2], &mut relief.spans);
-        let span = relief.spans[WheelSurface::span_at(&relief.spans, u[MANY / 2])?];
+        let span = relief.span(xi_w[MANY / 2], u[MANY / 2])?;
         let wheel = &relief.wheel;
         let piece = &wheel.section.pieces[span.piece];
         let here = spans_over(wheel, &xi_w, piece)?;
