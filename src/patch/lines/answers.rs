@@ -27,7 +27,7 @@ struct Answering<'l> {
 ///
 /// Method: between two lines each edge runs in a box in which the gap slopes along η one way; boxes between these are proved to be inside
 /// or outside by bounds of the slopes or by heights. No bounds are known where a surface stands upright: there, of lines no farther
-/// apart than [`UNKNOWN`], the one in the middle is to have the slices that theirs say.
+/// apart than [`UNKNOWN`], the one in the middle is to have the slices that theirs say, and each root that is not upright is to pass once.
 pub(in crate::patch) fn answer(lines: &mut Lines<'_>, pair: [&SlicedLine; 2], window: Interval) -> bool {
     let xi = Interval::new(pair[0].xi, pair[1].xi);
     let [a, b] = pair.map(|line| line.crossings.as_slice());

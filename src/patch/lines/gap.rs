@@ -217,7 +217,8 @@ impl<'a> PatchGap<'a> {
         }
     }
 
-    /// As [`Self::slopes`] whatever G is, but along normals also where a surface ends or steps a rounding from the sides of the box.
+    /// As [`Self::slopes`], whatever G is; unless it is along normals, also where a surface ends or steps a rounding from the sides of the
+    /// box.
     pub(super) fn slopes_by_rounding(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
         if self.has_plain_bounds() {
             self.slopes_of_parts(xi, eta, Torn::ByRounding)

@@ -70,7 +70,8 @@ impl PolynomialBranch {
 
     /// As [`Self::rates`] over an interval of t.
     ///
-    /// Method: in Bernstein's form a quotient of two polynomials is a mean of those of their coefficients if the lower ones are all positive.
+    /// Method: in Bernstein's form the quotient of two polynomials of one degree is a mean of those of their coefficients, if those of ξ′
+    /// are all positive.
     fn rates_over(&self, t: Interval) -> ([Interval; 2], Interval) {
         let rates = [&self.xi, &self.zeta].map(|c| bernstein(&derivative(c), t));
         let bounds = [&rates[0], &rates[1]].map(|c| Interval::around(c.iter().copied()));
