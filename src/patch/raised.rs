@@ -137,7 +137,7 @@ impl<'a> Raised<'a> {
         self.point(sigma, eta).map_or(f64::NAN, |(at, point)| self.height(&at, &point))
     }
 
-    /// Returns whether the wheel has a surface up to its axle's height over the raised point at η.
+    /// Returns whether the wheel has a surface over the raised point of σ at η \[mm\], as [`Relief::has_surface`].
     pub(super) fn has_surface(&mut self, sigma: f64, eta: f64) -> bool {
         let xi = self.at(sigma).xi();
         self.relief.has_surface(xi, eta)

@@ -108,7 +108,8 @@ impl<'a> Relief<'a> {
         Some(ReliefPoint { xi_w, shift, eta_w, span, point: self.wheel.point_at(xi_w, &span, u)? })
     }
 
-    /// Returns whether a column up to the axle's height holds the surface over (ξ, η).
+    /// Returns whether there is a surface over (ξ, η), without finding its point. Degenerate case: it may also be true where the surface would
+    /// lie beyond the axle, where [`Self::point`] gives `None`.
     pub fn has_surface(&mut self, xi: f64, eta: f64) -> bool {
         let [shift, eta_w] = self.skew.own(xi, eta);
         self.span(xi + shift, eta_w * eta_w).is_some()

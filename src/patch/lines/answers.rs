@@ -35,16 +35,17 @@ pub(in crate::patch) fn answer(lines: &mut Lines<'_>, pair: [&SlicedLine; 2], wi
         return false;
     }
     let held: Vec<Interval> = a.iter().zip(b).map(|(a, b)| held(lines, xi, a.kind, [a.eta, b.eta])).collect();
-    let is_upright = |(crossing, held): (&Crossing, &Interval)| {
-        let ends =
-            crossing.kind == CrossingKind::Root && crossing.sides.iter().any(|side| side.is_infinite());
-        crossing.kind != CrossingKind::Limit && (ends || lines.gap.torn_slopes(xi, *held).is_none())
+    let is_upright = |(crossing, held): (&Crossing, &Interval)| match crossing.kind {
+        CrossingKind::Limit => false,
+        CrossingKind::Root if crossing.sides.iter().any(|side| side.is_infinite()) => true,
+        _ => lines.gap.torn_slopes(xi, *held).is_none(),
     };
-    let is_known = |(crossing, held): (&Crossing, &Interval)| {
-        crossing.kind != CrossingKind::Root || passes_once(lines, xi, *held, crossing)
+    let is_settled = |(crossing, held): (&Crossing, &Interval)| {
+        crossing.kind != CrossingKind::Root
+            || is_upright((crossing, held))
+            || passes_once(lines, xi, *held, crossing)
     };
-    let is_unknown = a.iter().zip(&held).any(is_upright)
-        && a.iter().zip(&held).all(|crossing| is_upright(crossing) || is_known(crossing));
+    let is_unknown = a.iter().zip(&held).any(is_upright) && a.iter().zip(&held).all(is_settled);
     let short = UNKNOWN * lines.gap.reach().map_or(0.0, Interval::width);
     if xi.width() <= NEAR * lines.gap.placement().rolling_radius()
         || (is_unknown && xi.width() <= short && is_between(lines, pair, window))

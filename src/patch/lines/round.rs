@@ -18,7 +18,8 @@ use crate::separation::wheel_surface::WheelSurface;
 /// Most times that bounds of distances from the axle are narrowed by those of the heights: each gains two digits.
 const NARROWINGS: usize = 6;
 
-/// Difference of the radii over a box, as a share of them, up to which they are narrowed no more than its ends ask for.
+/// Share by which the radii over a box may differ, and with them its sagittae, where the profile is known not to end over it. Beyond it they
+/// are narrowed all the same.
 const ALIKE: f64 = 0.125;
 
 /// Rounding of the places of surfaces, in roundings of the axle distance.
