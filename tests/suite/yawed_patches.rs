@@ -99,17 +99,22 @@ fn check(name: &str, placement: &Placement, delta: f64) -> Patch {
     let mesh = StripMesh::new(placement, &patch, StripCounts::default()).expect("a mesh");
     let meshed: f64 = mesh.cells.iter().map(|cell| cell.area).sum();
     assert!((meshed / patch.area() - 1.0).abs() < 1e-6, "{name}: mesh of {meshed} over {}", patch.area());
-    // Over the rail's surface: how far the wheel is above the rail's point, raised by δ cos α along its normal; over a roller t − δ cos α.
-    let (over_rail, normal) = (Patch::over_rail(placement, delta, &NEAR), NormalGap::new(placement));
-    by_lines(&format!("{name}, over the rail"), &over_rail, |sigma, eta| {
+    let over_rail = Patch::over_rail(placement, delta, &NEAR);
+    by_lines(&format!("{name}, over the rail"), &over_rail, over_surface(placement, delta));
+    patch
+}
+
+/// How far the wheel is above the rail's point, raised by δ cos α along its normal; over a roller t − δ cos α.
+fn over_surface(placement: &Placement, delta: f64) -> impl FnMut(f64, f64) -> f64 {
+    let (mut evaluator, normal) = (Evaluator::new(placement), NormalGap::new(placement));
+    move |sigma, eta| {
         if placement.under().is_some() {
             return normal.gap(sigma, eta) - delta * normal.angle(sigma).cos();
         }
         let Some(at) = normal.rail().point(sigma) else { return f64::NAN };
         let (xi, zeta) = (at.xi - delta * at.cos * at.sin, at.zeta + delta * at.cos * at.cos);
         evaluator.separation(xi, eta) + evaluator.rail_height(xi) - zeta
-    });
-    patch
+    }
 }
 
 #[test]
@@ -299,6 +304,26 @@ fn both_prongs_beyond_a_hollow_end_are_found() {
         };
         assert_eq!(most_slices(&patch, c.xi), 2, "{name}");
         check(&name, &at_the_end(-0.05, 20.0, yaw, roller), 0.2);
+    }
+}
+
+/// An edge that turns between two lines on which it lies at one η, where a flank elsewhere on these lines stands upright.
+#[test]
+fn edges_that_turn_keep_to_the_level() {
+    let [rail, wheel] =
+        [standards::rail("49E5"), standards::wheel("APTA-240")].map(|p| p.expect("a profile"));
+    let pair = Pair::new(rail, wheel, 451.604).expect("a pair");
+    let placement =
+        pair.placed(17.664_920_183_710_414, 5.708_765_111_303_457, -0.045_851).expect("a placement");
+    let delta = 0.001_948_6;
+    let (patch, mut gap) =
+        (Patch::over_rail(&placement, delta, &Window::UNBOUNDED), over_surface(&placement, delta));
+    for sigma in (0..=200).map(|k| Interval::symmetric(0.5).step(k, 200)) {
+        let [slice] = sliced(&patch, sigma)[..] else { panic!("one slice at {sigma}") };
+        for eta in slice.ends() {
+            let off = gap(sigma, eta);
+            assert!(off.abs() < 1e-9, "{off:e} at {sigma}, {eta}");
+        }
     }
 }
 

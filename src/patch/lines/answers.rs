@@ -27,7 +27,7 @@ struct Answering<'l> {
 ///
 /// Method: between two lines each edge runs in a box in which the gap slopes along η one way; boxes between these are proved to be inside
 /// or outside by bounds of the slopes or by heights. No bounds are known where a surface stands upright: there, of lines no farther
-/// apart than [`UNKNOWN`], the one in the middle is to have the slices that theirs say, and each root that is not upright is to pass once.
+/// apart than [`UNKNOWN`], the one in the middle is to have the crossings that theirs say, and each root that is not upright is to pass once.
 pub(in crate::patch) fn answer(lines: &mut Lines<'_>, pair: [&SlicedLine; 2], window: Interval) -> bool {
     let xi = Interval::new(pair[0].xi, pair[1].xi);
     let [a, b] = pair.map(|line| line.crossings.as_slice());
@@ -48,7 +48,7 @@ pub(in crate::patch) fn answer(lines: &mut Lines<'_>, pair: [&SlicedLine; 2], wi
     let is_unknown = a.iter().zip(&held).any(is_upright) && a.iter().zip(&held).all(is_settled);
     let short = UNKNOWN * lines.gap.reach().map_or(0.0, Interval::width);
     if xi.width() <= NEAR * lines.gap.placement().rolling_radius()
-        || (is_unknown && xi.width() <= short && is_between(lines, pair, window))
+        || (is_unknown && xi.width() <= short && is_between(lines, xi, (a, &held), window))
     {
         return true;
     }
@@ -62,17 +62,18 @@ fn are_alike(a: &[Crossing], b: &[Crossing]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(alike)
 }
 
-/// Returns whether the line in the middle of two has its slices about where theirs say.
-fn is_between(lines: &mut Lines<'_>, [a, b]: [&SlicedLine; 2], window: Interval) -> bool {
-    let middle = line(lines, Interval::new(a.xi, b.xi).middle(), window);
-    let expected = a.slices.iter().zip(&b.slices).map(|(a, b)| {
-        Interval::new(
-            Interval::new(a.eta.low, b.eta.low).middle(),
-            Interval::new(a.eta.high, b.eta.high).middle(),
-        )
-    });
-    are_alike(&a.crossings, &middle.crossings)
-        && expected.zip(&middle.slices).all(|(expected, slice)| expected.overlaps(slice.eta))
+/// Returns whether the line in the middle of a range has the crossings of its ends, within the ranges that hold these.
+fn is_between(
+    lines: &mut Lines<'_>,
+    xi: Interval,
+    (ends, held): (&[Crossing], &[Interval]),
+    window: Interval,
+) -> bool {
+    let middle = line(lines, xi.middle(), window).crossings;
+    let is_held = |(crossing, held): (&Crossing, &Interval)| {
+        crossing.kind == CrossingKind::Limit || held.contains(crossing.eta)
+    };
+    are_alike(ends, &middle) && middle.iter().zip(held).all(is_held)
 }
 
 fn answer_at_crossings(lines: &mut Lines<'_>, answering: &Answering<'_>) -> bool {
