@@ -3,7 +3,7 @@
 use nalgebra::Point2;
 use serde::Serialize;
 
-use crate::patch::{BySamples, Patch, Window, least_separation, turning_points};
+use crate::patch::{Patch, Window, least_separation, turning_points};
 use crate::placement::Placement;
 use crate::separation::{Evaluator, midplane_gap};
 
@@ -42,7 +42,7 @@ pub struct Feasibility {
 /// Under a skewed wheel s alone decides. Bounds of s and of its slopes over boxes leave the places at which it may be least, up to
 /// |η| = 0.65 of the axle's distance, and find the least s to 1000 roundings of R.
 ///
-/// Where the patch is found from samples, so is the least s: [`Patch::new`].
+/// Where a body varies, the least s is found from samples, as the patch: [`Patch::new`].
 ///
 /// Cost: some ten nanoseconds a joint without skew, some hundred microseconds with skew.
 ///
@@ -60,7 +60,7 @@ pub struct Feasibility {
 /// # Ok::<(), wheelrail::Error>(())
 /// ```
 pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
-    if BySamples::apply_to(placement, 0.0) {
+    if placement.lofted().is_some() {
         return by_overlap(placement);
     }
     let along_zeta = match placement.skew() == 0.0 {
@@ -78,7 +78,7 @@ pub fn feasibility(placement: &Placement) -> Option<Feasibility> {
     Some(Feasibility { feasible, least_separation_mm, at_xi_mm, at_eta_mm })
 }
 
-/// Finds the least s where the patch is found from samples: at C, or where the bodies overlap most.
+/// Finds the least s of bodies that vary: at C, or where the bodies overlap most.
 fn by_overlap(placement: &Placement) -> Option<Feasibility> {
     let at_contact = Evaluator::new(placement).separation(0.0, 0.0);
     let extent = placement.rail().profile().extent().max(placement.wheel().profile().extent());

@@ -92,19 +92,15 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Finds all components inside the window. A line of constant ξ meets a component in one interval of η. Under a skewed wheel on a
-    /// rail, beyond the end of a tilted wheel, and where the patch is found from samples, it may meet it in several, and a component may
-    /// have holes.
+    /// Finds all components inside the window. A line of constant ξ meets a component in one interval of η. Under a skewed wheel, beyond the
+    /// end of a tilted body, and where the patch is found from samples, it may meet it in several, and a component may have holes.
     ///
     /// Degenerate cases: the patch is empty if s < δ nowhere, at a mere touch with δ = 0, and for δ = NaN. A part is missed only where it is
-    /// shallower than 1e-12 mm; of several slices of a line on a rail where it is shallower than 1e-8 mm and narrower than 1e-6 R along ξ; beside
-    /// an upright place of a body, and on a roller a step, within 1/512 of the range of ξ; and on a roller beside a hollow kink of a skewed
-    /// wheel, where it is shallower than 1e-4 mm.
+    /// shallower than 1e-12 mm; of several slices of a line where it is shallower than 1e-8 mm and narrower than 1e-6 R along ξ; and beside an
+    /// upright place of a body, within 1/512 of the range of ξ.
     ///
-    /// The patch is found from samples where a body varies, and on a roller where a hollow kink gives the lines two lowest places that may
-    /// differ by more than that, or where lines leave a tilted body over its end within the patch and enter it again.
-    /// Then a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or than 0.25 to
-    /// 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
+    /// Where a body varies the patch is found from samples: a part is missed if it does not hold C and is narrower than 0.5 mm along ξ, or
+    /// than 0.25 to 1 mm along η, or shallower than 1e-11 mm; what lies more than 120 mm and 2 √(2Rδ) ahead of C or behind is left out, and
     /// the boundary is interpolated to 1e-9 of its width.
     pub fn new(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Plane))
@@ -114,9 +110,12 @@ impl Patch {
     /// says ξ it is σ, and s is t + δ (1 − cos α). Area \[mm²\] and perimeter \[mm\] are those on the rail's surface.
     ///
     /// Degenerate cases: the patch is empty if t < δ cos α nowhere, for δ = NaN, and if the rail has no surface at C. A part is missed as
-    /// in [`Self::new`] with skew or on a roller. On a rail the patch is where the point of the rail, raised by δ cos α along its normal,
-    /// lies in the wheel. Where the wheel's surface ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points
-    /// along the normals end.
+    /// in [`Self::new`]; over a roller's surface also within 1/512 of the range of σ at a step, and beside a hollow kink of a skewed wheel where
+    /// it is shallower than 1e-4 mm. There the patch is found from samples where such a kink gives the lines two lowest places that may differ
+    /// by more, or where lines leave a tilted body over its end within the patch and enter it again.
+    ///
+    /// On a rail the patch is where the point of the rail, raised by δ cos α along its normal, lies in the wheel. Where the wheel's surface
+    /// ends or steps within the patch, that is up to δ |sin α| along ξ beside where its points along the normals end.
     pub fn over_rail(placement: &Placement, approach: f64, window: &Window) -> Self {
         Self::of(Outline::new(placement, approach, window, Reference::Rail))
     }

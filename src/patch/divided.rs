@@ -2,6 +2,7 @@
 
 use super::lines::rims::Rims;
 use crate::placement::{Body, Placement};
+use crate::profile::Side;
 
 /// Largest height \[mm\] of the lowest place that is found by roots over another one of its line. Samples would find both, but miss parts that
 /// are as deep and narrow.
@@ -16,10 +17,9 @@ pub(super) fn opening(placement: &Placement) -> f64 {
 /// Returns whether a line on a roller may have two lowest places near or within the patch at approach δ \[mm\]: at a hollow kink or beyond a
 /// hollow end.
 pub(super) fn lines_divide(placement: &Placement, approach: f64) -> bool {
-    placement.under().is_some_and(|under| {
-        (placement.skew() != 0.0 && has_hollow_kink(placement, approach))
-            || has_hollow_end(placement, under, approach)
-    })
+    placement.under().is_some()
+        && ((placement.skew() != 0.0 && has_hollow_kink(placement, approach))
+            || has_hollow_end(placement, approach))
 }
 
 /// Returns whether a hollow kink of a skewed wheel on a roller divides lines that cross it.
@@ -39,15 +39,13 @@ fn has_hollow_kink(placement: &Placement, approach: f64) -> bool {
     })
 }
 
-/// Returns whether lines leave the wheel or the roller over an end of its profile where the gap is below δ, and enter it again. `under` is the
-/// roller as a wheel upside down.
-fn has_hollow_end(placement: &Placement, under: &Placement, approach: f64) -> bool {
-    let facing = [(placement, placement.rail(), -1.0), (under, placement.wheel(), 1.0)];
-    facing.into_iter().any(|(body, other, sign)| {
-        let rims = Rims::new(body);
-        (0..2).filter(|&end| rims.is_hollow(end)).any(|end| {
-            rims.touched(end)
-                .is_some_and(|[xi, _, height]| height + sign * other.section.height(xi) < approach)
-        })
+/// Returns whether lines leave the wheel or the roller over an end of its profile where the gap is below δ, and enter it again.
+fn has_hollow_end(placement: &Placement, approach: f64) -> bool {
+    Rims::new(placement).hollow_ends().any(|(body, [xi, _, height])| {
+        let other = match body {
+            Side::Wheel => -placement.rail().section.height(xi),
+            Side::Rail => placement.wheel().section.height(xi),
+        };
+        height + other < approach
     })
 }

@@ -51,6 +51,14 @@ impl<'a> Level<'a> {
         }
     }
 
+    /// Returns whether swept bodies have surfaces at a place of a line that has the profile below.
+    pub(super) fn has_surface(&mut self, xi: f64, eta: f64) -> bool {
+        match self {
+            Self::Plane(evaluator) => evaluator.has_surface(xi, eta),
+            Self::Rail { .. } => !self.gap(xi, eta).is_nan(),
+        }
+    }
+
     /// Returns the gap, its slopes along ξ and η, and the abscissae of the profiles' points. Where a body has no surface the result is
     /// `None`, or the gap is NaN.
     pub(super) fn at(&mut self, xi: f64, eta: f64) -> Option<GapSlopes> {

@@ -2,8 +2,8 @@
 //!
 //! A patch is where one function of the plane is negative: G = s − δ, or over a rail's own surface the wheel's height over the raised point.
 //! Of swept bodies `lines` knows G, its slopes, and bounds of both over any box, and halves ranges of ξ until these prove that no line of a
-//! range meets the patch, or each in one slice at most. Over what is left on a rail single lines are solved by the same bounds, and boxes prove
-//! that their slices go on from one to the next; bodies that vary, and rollers whose lines may have several slices, are sampled (`fibres`).
+//! range meets the patch, or each in one slice at most. Over what is left single lines are solved by the same bounds, and boxes prove that their
+//! slices go on from one to the next; bodies that vary, and the surface of a roller where its lines may have several slices, are sampled (`fibres`).
 //! The edges over a range of ξ are interpolated between corners (`stretch`), 16 of them at once where each lies over one piece (`edges`).
 //! Bands that overlap are components, which `loops` goes around.
 
@@ -29,7 +29,6 @@ mod window;
 pub(crate) use band::{Band, BandPlaces};
 pub use components::{Component, Patch};
 pub use end::End;
-pub(crate) use fibres::BySamples;
 pub(crate) use lines::bands::least_separation;
 pub(crate) use loops::{BandSide, rings};
 pub use outline::Outline;

@@ -77,7 +77,7 @@ impl<'a> Slicer<'a> {
         approach: f64,
         (reference, window): (Reference, Interval),
     ) -> Self {
-        let sampled = BySamples::apply_to(placement, approach);
+        let sampled = BySamples::apply_to(placement, approach, reference);
         let normal = !sampled && placement.under().is_none() && reference == Reference::Rail;
         let level = || Level::new(placement, approach, reference);
         Self {

@@ -151,6 +151,15 @@ impl<'a> Evaluator<'a> {
         self.lower.as_mut().map_or(above, |lower| above + lower.height(xi, eta))
     }
 
+    /// Returns whether swept bodies have surfaces at a place over the profile below, as [`Relief::has_surface`].
+    pub(crate) fn has_surface(&mut self, xi: f64, eta: f64) -> bool {
+        let upper = match &mut self.upper {
+            Upper::Round(relief) => relief.has_surface(xi, eta),
+            Upper::Varying(..) => false,
+        };
+        upper && self.lower.as_mut().is_none_or(|lower| lower.has_surface(xi, eta))
+    }
+
     /// Computes s \[mm\] and its gradient [∂s/∂ξ, ∂s/∂η] at (ξ, η); one call costs less than two. s and ∂s/∂ξ are NaN off either
     /// body; ∂s/∂η is a number where only an extruded rail is missing.
     pub fn separation_and_gradient(&mut self, xi: f64, eta: f64) -> (f64, [f64; 2]) {

@@ -1,4 +1,5 @@
-//! Patches of yawed wheels over polynomials of any degree against a flood fill, and their feasibility against its least s.
+//! Patches of yawed wheels over polynomials of any degree, on rails and rollers, against a flood fill, and their feasibility against its
+//! least s.
 
 use std::path::Path;
 
@@ -71,7 +72,7 @@ fn plain(dice: &mut Random, half: f64) -> Option<Profile> {
 }
 
 /// A yawed pair of which one body or both are polynomials, lowered until it touches or put together at two points.
-fn case(number: u64) -> Option<Case> {
+fn case(number: u64, on_roller: bool) -> Option<Case> {
     let mut dice = Random::new(number ^ 0x706f_6c79);
     let half = *dice.pick(&[8.0, 20.0, 40.0]);
     let bend = 10f64.powf(dice.between(-2.0, 0.0));
@@ -89,6 +90,7 @@ fn case(number: u64) -> Option<Case> {
         _ => (plain(&mut dice, 1.3 * half)?, polynomials(&mut dice, half, bend)?),
     };
     let pair = Pair::new(rail, wheel, dice.between(200.0, 600.0)).ok()?;
+    let pair = if on_roller { pair.on_roller(dice.between(200.0, 600.0)).ok()? } else { pair };
     let yaw = dice.between(-1.0, 1.0) * *dice.pick(&[2e-4, 5e-3, 0.04, 0.1]);
     let placement = if dice.below(5) == 0 {
         pair.placed(dice.between(-half, half), dice.between(-half, half), yaw).ok()?
@@ -107,7 +109,7 @@ fn case(number: u64) -> Option<Case> {
     };
     let window = Window { xi: ends(1.5 * half, 0.3), eta: ends(long, 0.2) };
     Some(Case {
-        name: format!("polynomials {number}"),
+        name: format!("polynomials {number}{}", if on_roller { " on a roller" } else { "" }),
         placement,
         approach,
         window,
@@ -150,7 +152,13 @@ fn both(case: &Case) -> Open {
 
 #[test]
 fn patches_over_polynomials_are_what_a_flood_fill_finds() {
-    check_all(5 * campaign::scenes(), &[], case, both);
+    check_all(5 * campaign::scenes(), &[], |number| case(number, false), both);
+}
+
+/// Hollow kinks, steps and ends divide the lines of rollers, too.
+#[test]
+fn patches_on_rollers_over_polynomials_are_what_a_flood_fill_finds() {
+    check_all(campaign::scenes(), &[], |number| case(number, true), both);
 }
 
 /// The first contacts of a scene of `tests/defects`, as cases of its own approach and grid.

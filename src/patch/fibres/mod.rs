@@ -8,5 +8,5 @@ mod sampled;
 mod slices;
 
 pub(super) use bands::{LaneEnd, bands, joined};
-pub(crate) use sampled::BySamples;
+pub(super) use sampled::BySamples;
 pub(super) use slices::{Lane, LaneRow, LineSlice, SlicedLine, refined};

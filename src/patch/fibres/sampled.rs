@@ -9,6 +9,7 @@
 //! A part is missed only if it is narrower than the steps, across or along, and does not hold C.
 
 use super::slices::{Lane, LaneRow, LineSlice, SlicedLine, refined};
+use crate::conformal::Reference;
 use crate::numerics::interval::Interval;
 use crate::numerics::roots::change;
 use crate::patch::divided::lines_divide;
@@ -73,8 +74,9 @@ pub(crate) struct BySamples<'a> {
 
 impl<'a> BySamples<'a> {
     /// Returns whether the patch of a placed pair at approach δ \[mm\] is found from samples.
-    pub(crate) fn apply_to(placement: &Placement, approach: f64) -> bool {
-        placement.lofted().is_some() || lines_divide(placement, approach)
+    pub(crate) fn apply_to(placement: &Placement, approach: f64, reference: Reference) -> bool {
+        let over_roller = reference == Reference::Rail && placement.under().is_some();
+        placement.lofted().is_some() || (over_roller && lines_divide(placement, approach))
     }
 
     /// Makes the slices of a placed pair at a level of its gap, which is that of an approach δ \[mm\].

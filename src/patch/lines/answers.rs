@@ -103,7 +103,7 @@ fn answer_at_crossings(lines: &mut Lines<'_>, answering: &Answering<'_>) -> bool
 /// Returns whether the gap is proved to slope one way along η over a box around a root.
 fn passes_once(lines: &Lines<'_>, xi: Interval, eta: Interval, root: &Crossing) -> bool {
     let sign = if root.inside()[0] { 1.0 } else { -1.0 };
-    let slopes = lines.gap.slopes(xi, eta, Interval::ALL);
+    let slopes = lines.gap.torn_slopes(xi, eta);
     slopes.is_some_and(|slopes| (slopes.across * sign).low > 0.0)
 }
 
@@ -140,8 +140,8 @@ fn keeps_signs(lines: &Lines<'_>, xi: Interval, ends: [&Crossing; 2]) -> bool {
         CrossingKind::Root => return true,
         CrossingKind::Limit => return false,
     };
-    let places = Interval::around(xi.ends().map(|xi| lines.gap.xi_and_run(xi).0));
-    let Some(slopes) = lines.gap.along_curve(lines.rims.slopes(rim, places), xi) else { return false };
+    let eta = Interval::between(ends[0].eta, ends[1].eta);
+    let Some(slopes) = lines.along_rim(rim, xi, eta) else { return false };
     (0..2).all(|side| {
         let gaps = ends.map(|end| end.sides[side]);
         let sign = if gaps[0] < 0.0 { -1.0 } else { 1.0 };
@@ -177,7 +177,8 @@ fn is_all(lines: &mut Lines<'_>, xi: Interval, eta: Interval, inside: bool) -> b
         if lines.gap.is_all(xi, eta, inside) {
             continue;
         }
-        let Some(slopes) = lines.gap.slopes(xi, eta, Interval::ALL) else {
+        let middle = sign * lines.gap.gap(xi.middle(), eta.middle());
+        let Some(slopes) = lines.gap.torn_slopes(xi, eta).filter(|_| middle.is_finite()) else {
             waiting.extend(eta.halves());
             continue;
         };
@@ -194,13 +195,11 @@ fn is_all(lines: &mut Lines<'_>, xi: Interval, eta: Interval, inside: bool) -> b
             Some(place) => {
                 let ends = xi.ends().map(|xi| sign * lines.gap.gap(xi, place));
                 let is_clear = |slopes: BoxSlopes| least_between(ends, xi.width(), slopes.along * sign) > 0.0;
-                is_clear(slopes)
-                    || lines.gap.slopes(xi, Interval::of(place), Interval::ALL).is_some_and(is_clear)
+                is_clear(slopes) || lines.gap.torn_slopes(xi, Interval::of(place)).is_some_and(is_clear)
             }
             None => {
-                let gap = sign * lines.gap.gap(xi.middle(), eta.middle());
                 let half = [slopes.along.magnitude() * xi.width(), across.magnitude() * eta.width()];
-                gap > (half[0] + half[1]) / 2.0
+                middle > (half[0] + half[1]) / 2.0
             }
         };
         if clear {

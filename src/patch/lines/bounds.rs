@@ -9,6 +9,7 @@ use crate::numerics::direction;
 use crate::numerics::interval::Interval;
 use crate::patch::raised::Raised;
 use crate::placement::Placement;
+use crate::profile::Side;
 
 /// Fall of the slope at kinks beyond which second derivatives are not asked for: no gap without a radius below 1 mm is convex to 1e-13 mm.
 const MOST_FALL: f64 = 1e-6;
@@ -72,7 +73,11 @@ impl<'a> GapBounds<'a> {
 
     /// Returns the range of η \[mm\], over all ξ of a range, up to which surfaces are looked at.
     pub(super) fn within(&self, xi: Interval) -> Interval {
-        self.wheel.within(xi)
+        let wheel = self.wheel.within(xi);
+        match &self.under {
+            Under::Rail(_) => wheel,
+            Under::Roller(roller) => wheel.cut(roller.within(xi)),
+        }
     }
 
     /// Returns whether no surface of revolution is found to fold back over a box.
@@ -146,22 +151,32 @@ impl<'a> GapBounds<'a> {
         self.raised_slopes(raised, sigma).map(|over| over.xi)
     }
 
-    /// Returns bounds of the slope of the gap over a rail along a curve on the wheel, from those of its dζ/dξ; `None` where the rail ends or
-    /// steps. `raised` is its raised surface, unless the gap is over the tangent plane.
-    pub(super) fn along_curve(
+    /// Returns bounds of the slope of the gap along a circle over a box that holds it, from those of its height's slope and of dη/dξ; `None`
+    /// where what faces it ends or steps. `raised` is a rail's raised surface, unless the gap is over the tangent plane.
+    pub(super) fn along_rim(
         &self,
-        slopes: Interval,
+        (body, [slopes, turns]): (Side, [Interval; 2]),
         (raised, approach): (Option<&Raised<'_>>, f64),
-        xi: Interval,
+        (xi, eta): (Interval, Interval),
     ) -> Option<Interval> {
-        match (raised, &self.under) {
-            (Some(raised), _) => {
+        let facing = match (raised, &self.under, body) {
+            (Some(raised), ..) => {
                 let RaisedSlopes { run, rise, .. } = self.raised_slopes((raised, approach), xi)?;
-                Some(slopes * run + -rise)
+                return Some(slopes * run + -rise);
             }
-            (None, Under::Rail(tree)) => Some(slopes + -tree.over(xi)?.slopes),
-            (None, Under::Roller(_)) => None,
-        }
+            (None, Under::Rail(tree), _) => -tree.over(xi)?.slopes,
+            (None, Under::Roller(roller), Side::Wheel) => {
+                let below = roller.slopes_over(xi, eta, Torn::No)?;
+                below.along + below.across * turns
+            }
+            (None, Under::Roller(_), Side::Rail) => {
+                let above = self.wheel.slopes_over(xi, eta, Torn::No)?;
+                let [sin, cos] = self.wheel.skew;
+                let along = above.along * cos + -(above.across * sin);
+                along + (above.along * sin + above.across * cos) * turns
+            }
+        };
+        Some(slopes + facing)
     }
 
     /// Returns bounds of the slopes of the wheel's height over the raised curve of a rail's surface, over a box of σ and η; `None` as for
@@ -298,13 +313,23 @@ impl<'a> GapBounds<'a> {
         Some(above.plus(&below))
     }
 
-    /// Returns whether every line of a rail over a range of ξ \[mm\] has one lowest place at most within a range of η.
+    /// Returns whether every line over a range of ξ \[mm\] has one lowest place at most within a range of η.
     ///
-    /// Method: what is raised from a rail is straight along η, so that the gap bends as the wheel does. At hollow kinks of J in all one of
-    /// two places is lower by (J sinχ)²/2c at most, with `opening` the coefficient c/2 of η² at C; up to `shallow` \[mm\] it does not count.
+    /// Method: the gap bends along η as both bodies do; what is raised from a rail is straight. At kinks by which the slope along the line
+    /// falls by J in all one of two places is lower by J²/2c at most, with `opening` the coefficient c/2 of η² at C; up to `shallow` \[mm\] it
+    /// does not count. J is sinχ times the fall at the wheel's kinks, and no more than that at a roller's.
     pub(super) fn is_convex(&self, xi: Interval, eta: Interval, (opening, shallow): (f64, f64)) -> bool {
         let sin = self.wheel.skew[0].abs();
-        let most_fall = (4.0 * opening * shallow).sqrt() / sin;
-        sin == 0.0 || self.wheel.bends_over(xi, eta, most_fall).is_some_and(|bends| bends.across.low > 0.0)
+        let most_fall = (4.0 * opening * shallow).sqrt();
+        let bends =
+            |body: &Round<'_>, most_fall: f64| body.bends_over(xi, eta, most_fall).map(|bends| bends.across);
+        let of_wheel = || bends(&self.wheel, most_fall / sin);
+        sin == 0.0
+            || match &self.under {
+                Under::Rail(_) => of_wheel().is_some_and(|across| across.low > 0.0),
+                Under::Roller(roller) => of_wheel().is_some_and(|across| {
+                    bends(roller, most_fall).is_some_and(|below| (across + below).low > 0.0)
+                }),
+            }
     }
 }

@@ -8,7 +8,7 @@ use crate::numerics::interval::Interval;
 use crate::patch::level::{Level, steps};
 use crate::patch::raised::Raised;
 use crate::placement::{Body, Placement};
-use crate::profile::Section;
+use crate::profile::{Section, Side};
 use crate::separation::midplane_gap;
 
 /// Kink of a roller's surface \[rad\] at which the gap along its normals steps. A smaller one moves gaps near δ by some roundings.
@@ -153,11 +153,11 @@ impl<'a> PatchGap<'a> {
         }
     }
 
-    /// Returns whether the bodies have surfaces at a place; on a wheel over a rail at less cost than G.
+    /// Returns whether the bodies have surfaces at a place; but along normals at less cost than G.
     pub(super) fn has_surface(&mut self, xi: f64, eta: f64) -> bool {
         match &mut self.of {
             GapOf::Raised(raised) => raised.has_surface(xi, eta),
-            GapOf::Level(level) => !level.gap(xi, eta).is_nan(),
+            GapOf::Level(level) => level.has_surface(xi, eta),
         }
     }
 
@@ -217,26 +217,27 @@ impl<'a> PatchGap<'a> {
         }
     }
 
-    /// As [`Self::slopes`], whatever G is; unless it is along normals, also where a surface ends or steps a rounding from the sides of the
-    /// box.
-    pub(super) fn slopes_by_rounding(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
+    /// As [`Self::slopes`], whatever G is; but along normals, for each part of surfaces that end or step in the box, continued over all of it.
+    /// Where no rim passes through the box, one of the parts is its surface.
+    pub(super) fn torn_slopes(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
         if self.has_plain_bounds() {
-            self.slopes_of_parts(xi, eta, Torn::ByRounding)
+            self.slopes_of_parts(xi, eta, Torn::Allowed)
         } else {
             self.slopes(xi, eta, Interval::ALL)
         }
     }
 
-    /// As [`Self::slopes`], but along normals, for each part of surfaces that end or step in the box, continued over all of it.
-    pub(super) fn torn_slopes(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
-        self.slopes_of_parts(xi, eta, Torn::Allowed)
-    }
-
-    /// Returns bounds of the slope of G along a curve on the wheel over a range of ξ or σ, from those of its dζ/dξ; `None` on a roller, and where
-    /// what is below ends or steps.
-    pub(super) fn along_curve(&self, slopes: Interval, xi: Interval) -> Option<Interval> {
+    /// Returns bounds of the slope of G along a circle over a box that holds it, from those of its height's slope and of dη/dξ; `None` along
+    /// normals, and where what faces it ends or steps.
+    pub(super) fn along_rim(
+        &self,
+        (body, slopes): (Side, [Interval; 2]),
+        xi: Interval,
+        eta: Interval,
+    ) -> Option<Interval> {
         let raised = self.raised().filter(|raised| raised.surface.is_some());
-        self.bounds.along_curve(slopes, (raised, self.approach), xi)
+        let plain = self.has_plain_bounds();
+        plain.then(|| self.bounds.along_rim((body, slopes), (raised, self.approach), (xi, eta)))?
     }
 
     fn slopes_of_parts(&self, xi: Interval, eta: Interval, torn: Torn) -> Option<BoxSlopes> {

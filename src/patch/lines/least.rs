@@ -70,8 +70,8 @@ fn least_on_rim(
         if gap < best[0] {
             best = [gap, x, eta];
         }
-        let places = Interval::around(xi.ends().map(|xi| lines.gap.xi_and_run(xi).0));
-        let slopes = lines.gap.along_curve(lines.rims.slopes(rim, places), xi).unwrap_or(Interval::ALL);
+        let ends = xi.ends().map(|xi| rim_on(lines, rim, xi));
+        let slopes = lines.along_rim(rim, xi, Interval::between(ends[0], ends[1])).unwrap_or(Interval::ALL);
         let one_way = slopes.low >= 0.0 || slopes.high <= 0.0;
         let higher = gap - slopes.magnitude() * xi.width() / 2.0 >= best[0] - shallow;
         if !(one_way || higher) && xi.width() > lines.narrowest() {
@@ -190,7 +190,7 @@ pub(in crate::patch) fn lowest_within(lines: &mut Lines<'_>, xi: f64, over: Inte
     let shallow = lines.gap.roundings(SHALLOW);
     while let Some((eta, ends)) = waiting.pop() {
         let line = Interval::of(xi);
-        let slopes = lines.gap.slopes_by_rounding(line, eta).map(|slopes| slopes.across);
+        let slopes = lines.gap.torn_slopes(line, eta).map(|slopes| slopes.across);
         // Where no surface folds back, one that is missing at both ends of a part is missing all over it.
         let missing = ends.iter().all(|gap| gap.is_infinite());
         let settled = slopes.is_some_and(|across| {

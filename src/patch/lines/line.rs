@@ -175,7 +175,7 @@ fn roots(lines: &mut Lines<'_>, xi: f64, (part, over): (Interval, Interval), fou
     while let Some(LinePart { eta, ends }) = waiting.pop() {
         count += 1;
         let passes = (ends[0] < 0.0) != (ends[1] < 0.0);
-        let slopes = lines.gap.slopes_by_rounding(Interval::of(xi), eta);
+        let slopes = lines.gap.torn_slopes(Interval::of(xi), eta);
         let shortest = shortest_part(lines, over, slopes.is_some());
         match crossed(lines, xi, (LinePart { eta, ends }, slopes)) {
             Some(false) => continue,

@@ -76,9 +76,9 @@ pub(super) struct Lines<'a> {
     pub(super) gap: PatchGap<'a>,
     /// Distance \[mm\] from η = 0 up to which a surface is looked for.
     farthest: f64,
-    /// η \[mm\] at which lines of constant ξ touch the circles of the wheel's ends, or come nearest to that.
-    turning: [f64; 2],
-    /// Circles at which the wheel ends or steps.
+    /// η \[mm\] at which lines of constant ξ touch the circles of the bodies' ends, or come nearest to that.
+    turning: Vec<f64>,
+    /// Circles at which the wheel or a roller ends or steps.
     rims: Rims,
     /// Intervals of each profile's ξ \[mm\] at which its surface has a step or a hole.
     steps: [Vec<Interval>; 2],
@@ -100,7 +100,7 @@ impl<'a> Lines<'a> {
     fn of(placement: &'a Placement, gap: PatchGap<'a>) -> Self {
         let steps = sections(placement).map(|section| section.map_or_else(Vec::new, Section::steps));
         let rims = Rims::new(placement);
-        let turning = [0, 1].map(|end| rims.touched(end).map_or(0.0, |[_, eta, _]| eta));
+        let turning = rims.turning();
         let farthest = FARTHEST_SINE * placement.rolling_radius();
         Self { gap, farthest, turning, rims, steps, cells: Vec::new() }
     }
@@ -174,7 +174,7 @@ impl<'a> Lines<'a> {
         let mut has_surface = |eta: f64| !self.gap.across(xi, eta).is_nan();
         let doubled = std::iter::successors(Some(BESIDE_END), |far| Some(2.0 * far));
         let either_side = doubled.take_while(|far| *far < self.farthest).flat_map(|far| [far, -far]);
-        let met = either_side.chain(self.turning).find(|eta| has_surface(*eta));
+        let met = either_side.chain(self.turning.iter().copied()).find(|eta| has_surface(*eta));
         met.map_or(f64::NAN, |eta| last_where(has_surface, eta, 0.0))
     }
 
@@ -247,10 +247,10 @@ impl<'a> Lines<'a> {
             (near, far) = (far, WIDER * far);
         }
         if gap(far).is_nan() {
-            far = last_where(|off| !gap(off).is_nan(), near, far);
+            far = last_where(|off| self.gap.has_surface(xi, lowest + off), near, far);
         }
         // Without a root the surface ends inside the patch.
-        lowest + bracketed(gap, near, far).unwrap_or(far)
+        lowest + bracketed(|off| self.gap.gap(xi, lowest + off), near, far).unwrap_or(far)
     }
 
     /// Returns whether a surface may step between two places on the line of ξ \[mm\].
@@ -331,6 +331,13 @@ impl<'a> Lines<'a> {
             valley = wider.grown(FARTHER_VALLEY * wider.width() + self.narrowest());
         }
         None
+    }
+
+    /// Returns bounds of the slope of the gap along a rim between two lines of ξ or σ, from the range of its η \[mm\]; `None` as for
+    /// [`PatchGap::along_rim`].
+    fn along_rim(&self, rim: usize, xi: Interval, eta: Interval) -> Option<Interval> {
+        let places = Interval::around(xi.ends().map(|xi| self.gap.xi_and_run(xi).0));
+        self.gap.along_rim((self.rims.body(rim), self.rims.slopes(rim, places)), xi, eta)
     }
 
     /// Returns whether the least s of a line over the tangent plane is proved to be a convex function of ξ over a range of ξ or σ, some of

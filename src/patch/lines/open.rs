@@ -3,6 +3,7 @@
 use super::Lines;
 use super::ranges::{SHALLOW, UNKNOWN};
 use crate::numerics::interval::Interval;
+use crate::profile::Section;
 
 /// Most boxes by which the lines of a range are proved to have one lowest place.
 const MOST_BOXES: usize = 24;
@@ -65,12 +66,16 @@ fn strips(lines: &Lines<'_>, over: Interval) -> Vec<Interval> {
     over.parts(places.collect()).collect()
 }
 
-/// Whether no line of a range meets the patch in several slices: on a roller, and without skew, where a line only rises from the midplane up
-/// to an end or step of the wheel.
+/// Whether no line of a range meets the patch in several slices: without skew, where a line only rises from the midplane up to an end or step
+/// of a body, and along the normals of a roller, whose lines are sampled where they may.
 pub(in crate::patch) fn have_one_slice(lines: &Lines<'_>, over: Interval) -> bool {
     let (placement, wheel) = (lines.gap.placement(), &lines.gap.placement().wheel().section);
-    let is_whole = || wheel.steps.is_empty() && wheel.reach().is_some_and(|reach| reach.holds(over));
-    placement.under().is_some() || (!lines.gap.is_skewed() && is_whole())
+    let is_whole = |section: &Section| {
+        section.steps.is_empty() && section.reach().is_some_and(|reach| reach.holds(over))
+    };
+    let are_whole =
+        || is_whole(wheel) && placement.under().is_none_or(|under| is_whole(&under.wheel().section));
+    !lines.gap.has_plain_bounds() || (!lines.gap.is_skewed() && are_whole())
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
-//! The circles about an axle at which a surface of revolution ends or steps, as lines of constant ξ meet them.
+//! The circles about their axles at which the wheel and a roller end or step, as lines of constant ξ meet them.
 
 use crate::numerics::interval::Interval;
 use crate::placement::Placement;
+use crate::profile::Side;
 
 /// Farthest place from the midplane that is examined, as tan(v/2): |η′| = 0.65 ρ. A tilted wheel is treated as if it ended at 0.7 ρ.
 const FARTHEST: f64 = 0.369;
@@ -11,47 +12,38 @@ pub(super) const FARTHEST_SINE: f64 = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHES
 /// The circle of one profile point about the axle.
 #[derive(Debug, Clone, Copy)]
 struct Circle {
+    /// Rail stands for a roller.
+    body: Side,
     /// Profile abscissa in the contact frame \[mm\].
     p: f64,
-    /// ζ there \[mm\].
+    /// Height there \[mm\]: ζ of a wheel, −ζ of a roller.
     height: f64,
     /// Axle distance \[mm\].
     radius: f64,
-}
-
-/// The ends and steps of a wheel, or of a roller upside down.
-#[derive(Debug)]
-pub(in crate::patch) struct Rims {
-    /// Two for every part of the profile without a step, by ascending abscissa.
-    circles: Vec<Circle>,
-    /// sin θ.
-    tilt: f64,
-    /// cos θ.
-    level: f64,
+    /// sin θ and cos θ.
+    tilt: [f64; 2],
     /// sin χ and cos χ.
     skew: [f64; 2],
 }
 
+/// The ends and steps of a wheel, and of a roller upside down.
+#[derive(Debug)]
+pub(in crate::patch) struct Rims {
+    /// For each body two for every part of the profile without a step, by ascending abscissa.
+    circles: Vec<Circle>,
+}
+
 impl Rims {
-    /// Makes those of the wheel of a placed pair.
+    /// Makes those of the wheel of a placed pair, and of a roller.
     pub(in crate::patch) fn new(placement: &Placement) -> Self {
-        let (wheel, axle, skew) = (placement.wheel(), placement.rolling_radius(), placement.skew_rotation());
-        let (section, frame) = (&wheel.section, wheel.section.frame);
-        let last = section.pieces.len().saturating_sub(1);
-        let firsts = std::iter::once(0).chain(section.steps.iter().copied());
-        let lasts = section.steps.iter().map(|step| step - 1).chain([last]);
-        let circle = |piece: usize, end: usize| {
-            let piece = section.pieces.get(piece)?;
-            let (p, height) = (piece.xi[end], piece.heights[end]);
-            Some(Circle { p, height, radius: axle - p * frame.sin - height * frame.cos })
-        };
-        let circles = firsts.zip(lasts).flat_map(|(first, last)| [circle(first, 0), circle(last, 1)]);
-        Self {
-            circles: circles.flatten().collect(),
-            tilt: frame.sin,
-            level: frame.cos,
-            skew: [skew.im, skew.re],
-        }
+        let wheel = circles(placement, Side::Wheel);
+        let roller = placement.under().into_iter().flat_map(|under| circles(under, Side::Rail));
+        Self { circles: wheel.chain(roller).collect() }
+    }
+
+    /// Returns the body that a place bounds.
+    pub(super) fn body(&self, place: usize) -> Side {
+        self.circles[place / 2].body
     }
 
     /// Returns the number of places at which a line may meet a circle.
@@ -61,59 +53,87 @@ impl Rims {
 
     /// Returns η \[mm\] at which the line of ξ meets a circle, by the number of the place; NaN if it does not, or too far from the midplane.
     pub(super) fn met(&self, place: usize, xi: f64) -> f64 {
-        let (circle, [sin, cos], t) = (&self.circles[place / 2], self.skew, self.turn(place, xi));
+        let (circle, t) = (&self.circles[place / 2], self.turn(place, xi));
+        let [sin, cos] = circle.skew;
         let share = 2.0 * circle.radius / (1.0 + t * t);
-        (circle.p + share * t * t * self.tilt) * sin + share * t * cos
+        (circle.p + share * t * t * circle.tilt[0]) * sin + share * t * cos
     }
 
     /// Returns t = tan(v/2) of a place; NaN as for [`Self::met`].
     ///
     /// Method: it is a root of (p cosχ − ξ) (1 + t²) + 2 ρ (t² sinθ cosχ − t sinχ).
     fn turn(&self, place: usize, xi: f64) -> f64 {
-        let (circle, [sin, cos]) = (&self.circles[place / 2], self.skew);
+        let circle = &self.circles[place / 2];
+        let [sin, cos] = circle.skew;
         let constant = circle.p * cos - xi;
-        let square = constant + 2.0 * circle.radius * self.tilt * cos;
+        let square = constant + 2.0 * circle.radius * circle.tilt[0] * cos;
         let half = circle.radius * sin;
         let sum = half + (half * half - square * constant).sqrt().copysign(half);
         let t = if place.is_multiple_of(2) { constant / sum } else { sum / square };
         if t.abs() <= FARTHEST { t } else { f64::NAN }
     }
 
-    /// Returns bounds of dζ/dξ along the circle of a place between two lines that meet it there.
+    /// Returns bounds of the slope of the circle's height along ξ, and of dη/dξ, between two lines that meet it at a place.
     ///
-    /// Method: it changes monotonely with t.
-    pub(super) fn slopes(&self, place: usize, xi: Interval) -> Interval {
-        let [sin, cos] = self.skew;
-        let slope = |t: f64| 2.0 * t * self.level / (2.0 * t * self.tilt * cos - (1.0 - t * t) * sin);
-        let [from, to] = xi.ends().map(|xi| slope(self.turn(place, xi)));
-        Interval::between(from, to)
+    /// Method: both change monotonely with tan v.
+    pub(super) fn slopes(&self, place: usize, xi: Interval) -> [Interval; 2] {
+        let Circle { tilt: [tilt, level], skew: [sin, cos], .. } = self.circles[place / 2];
+        let ends = xi.ends().map(|xi| {
+            let t = self.turn(place, xi);
+            let (y, square) = (2.0 * t, 1.0 - t * t);
+            let run = y * tilt * cos - square * sin;
+            [y * level / run, (y * tilt * sin + square * cos) / run]
+        });
+        [0, 1].map(|k| Interval::between(ends[0][k], ends[1][k]))
     }
 
-    /// Returns ξ, η and ζ \[mm\] at which a line of constant ξ touches the circle of the left (0) or the right (1) end of the profile, or comes
-    /// nearest to that.
-    pub(in crate::patch) fn touched(&self, end: usize) -> Option<[f64; 3]> {
-        let circle = if end == 0 { self.circles.first() } else { self.circles.last() }?;
-        Some(self.touched_at(circle))
+    /// Returns the circles of the ends of each body's profile, with −1 on the left and 1 on the right.
+    fn ends(&self) -> impl Iterator<Item = (&Circle, f64)> {
+        let bodies = self.circles.chunk_by(|a, b| a.body == b.body);
+        let ends = bodies.flat_map(|own| [own.first().zip(Some(-1.0)), own.last().zip(Some(1.0))]);
+        ends.flatten()
+    }
+
+    /// Returns η \[mm\] at which lines of constant ξ touch the circles of the ends, or come nearest to that.
+    pub(super) fn turning(&self) -> Vec<f64> {
+        self.ends().map(|(circle, _)| touched(circle)[1]).collect()
+    }
+
+    /// Returns the ends over which lines of constant ξ leave a surface, and enter it again, with ξ, η and height \[mm\] at which a line touches
+    /// their circles, or comes nearest to that.
+    pub(in crate::patch) fn hollow_ends(&self) -> impl Iterator<Item = (Side, [f64; 3])> {
+        let hollow = self.ends().filter(|(circle, outwards)| circle.tilt[0] * outwards > 0.0);
+        hollow.map(|(circle, _)| (circle.body, touched(circle)))
     }
 
     /// Returns ξ and η \[mm\] at which two places are one, if these are those of one circle.
     pub(super) fn joined(&self, [one, other]: [usize; 2]) -> Option<[f64; 2]> {
-        let [xi, eta, _] = self.touched_at(self.circles.get(one / 2)?);
+        let [xi, eta, _] = touched(self.circles.get(one / 2)?);
         (one / 2 == other / 2).then_some([xi, eta])
     }
+}
 
-    fn touched_at(&self, circle: &Circle) -> [f64; 3] {
-        let [sin, cos] = self.skew;
-        let t = ((sin / (self.tilt * cos)).atan() / 2.0).tan().clamp(-FARTHEST, FARTHEST);
-        let share = 2.0 * circle.radius * t / (1.0 + t * t);
-        let [along, across] = [circle.p + share * t * self.tilt, share];
-        [along * cos - across * sin, along * sin + across * cos, circle.height + share * t * self.level]
-    }
+fn circles(placement: &Placement, body: Side) -> impl Iterator<Item = Circle> {
+    let (section, axle) = (&placement.wheel().section, placement.rolling_radius());
+    let (tilt, skew) = ([section.frame.sin, section.frame.cos], placement.skew_rotation());
+    let last = section.pieces.len().saturating_sub(1);
+    let firsts = std::iter::once(0).chain(section.steps.iter().copied());
+    let lasts = section.steps.iter().map(|step| step - 1).chain([last]);
+    let circle = move |piece: usize, end: usize| {
+        let piece = section.pieces.get(piece)?;
+        let (p, height) = (piece.xi[end], piece.heights[end]);
+        let radius = axle - p * tilt[0] - height * tilt[1];
+        Some(Circle { body, p, height, radius, tilt, skew: [skew.im, skew.re] })
+    };
+    firsts.zip(lasts).flat_map(move |(first, last)| [circle(first, 0), circle(last, 1)]).flatten()
+}
 
-    /// Returns whether lines of constant ξ leave the surface over the left (0) or the right (1) end of the profile, and enter it again.
-    pub(in crate::patch) fn is_hollow(&self, end: usize) -> bool {
-        if end == 0 { self.tilt < 0.0 } else { self.tilt > 0.0 }
-    }
+fn touched(circle: &Circle) -> [f64; 3] {
+    let Circle { tilt: [tilt, level], skew: [sin, cos], .. } = *circle;
+    let t = ((sin / (tilt * cos)).atan() / 2.0).tan().clamp(-FARTHEST, FARTHEST);
+    let share = 2.0 * circle.radius * t / (1.0 + t * t);
+    let [along, across] = [circle.p + share * t * tilt, share];
+    [along * cos - across * sin, along * sin + across * cos, circle.height + share * t * level]
 }
 
 #[cfg(test)]
@@ -157,8 +177,16 @@ mod tests {
                     let rise = (height(xi + BESIDE, on(next)[side]) - sides[side]) / BESIDE;
                     if !rise.is_nan() {
                         met += 1;
-                        let slopes = rims.slopes(place, Interval::new(xi, xi + BESIDE)).grown(1e-6);
-                        assert!(slopes.contains(rise), "{slope} {skew} {place} {xi}: {rise}, {slopes:?}");
+                        let [slopes, turns] = rims.slopes(place, Interval::new(xi, xi + BESIDE));
+                        assert!(
+                            slopes.grown(1e-6).contains(rise),
+                            "{slope} {skew} {place} {xi}: {rise}, {slopes:?}"
+                        );
+                        let turn = (next - eta) / BESIDE;
+                        assert!(
+                            turns.grown(1e-6 * (1.0 + turn.abs())).contains(turn),
+                            "{slope} {skew} {place} {xi}: {turn}, {turns:?}"
+                        );
                     }
                 }
             }

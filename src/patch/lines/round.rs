@@ -29,27 +29,15 @@ const PLACE_ROUNDINGS: f64 = 64.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Torn {
     No,
-    /// Only where it ends or steps a rounding from the box's sides; it then is continued up to these.
-    ByRounding,
     /// The bounds hold for each of its parts, continued over the whole box.
     Allowed,
 }
 
 impl Torn {
-    /// Returns bounds over a range of abscissae that rounding may widen by as much on either side \[mm\].
-    pub(super) fn over(
-        self,
-        tree: &ProfileTree<'_>,
-        range: Interval,
-        rounding: f64,
-    ) -> Option<ProfileBounds> {
+    /// Returns bounds over a range of abscissae \[mm\].
+    fn over(self, tree: &ProfileTree<'_>, range: Interval) -> Option<ProfileBounds> {
         match self {
             Self::No => tree.over(range),
-            Self::ByRounding => {
-                let inner = range.grown(-rounding);
-                let inner = if inner.has_width() { inner } else { Interval::of(range.middle()) };
-                tree.is_whole(inner).then(|| tree.over_all(range))?
-            }
             Self::Allowed => tree.over_all(range),
         }
     }
@@ -221,7 +209,7 @@ impl<'a> Round<'a> {
             return None;
         }
         let (abscissae, radii) = self.narrowed(xi, eta);
-        let ProfileBounds { slopes, heights } = torn.over(&self.tree, abscissae, 2.0 * self.rounding())?;
+        let ProfileBounds { slopes, heights } = torn.over(&self.tree, abscissae)?;
         let radii = radii.cut(self.radii_of(abscissae, heights));
         let upright = cos - sin * slopes.low <= 0.0 || cos - sin * slopes.high <= 0.0;
         (!upright && slopes.magnitude().is_finite()).then_some(SweptBox { abscissae, slopes, radii, aside })
@@ -231,7 +219,7 @@ impl<'a> Round<'a> {
     pub(super) fn slopes_over(&self, xi: Interval, eta: Interval, torn: Torn) -> Option<SurfaceSlopes> {
         if self.skew[0] == 0.0 && eta == Interval::of(0.0) {
             // In the midplane they are those of the profile.
-            let along = torn.over(&self.tree, xi, self.rounding())?.slopes;
+            let along = torn.over(&self.tree, xi)?.slopes;
             let [growth, across] = [Interval::of(1.0).quotient(self.radii), Interval::of(0.0)];
             return along.magnitude().is_finite().then_some(SurfaceSlopes { xi, along, growth, across });
         }
