@@ -1,18 +1,13 @@
-//! Tells where a line of constant ξ may meet a patch on a roller in several intervals of η.
+//! Tells where a line of constant σ may meet a patch over a roller's own surface in several intervals of η.
 
+use super::lines::opening;
 use super::lines::rims::Rims;
-use crate::placement::{Body, Placement};
+use crate::placement::Placement;
 use crate::profile::Side;
 
 /// Largest height \[mm\] of the lowest place that is found by roots over another one of its line. Samples would find both, but miss parts that
 /// are as deep and narrow.
 const LOW_RIDGE: f64 = 1e-4;
-
-/// Returns the coefficient \[1/mm\] of η² in the gap at C, without skew.
-pub(super) fn opening(placement: &Placement) -> f64 {
-    let around = |body: &Body| body.section.frame.cos / body.axle_distance();
-    0.5 * (around(placement.wheel()) + around(placement.rail()))
-}
 
 /// Returns whether a line on a roller may have two lowest places near or within the patch at approach δ \[mm\]: at a hollow kink or beyond a
 /// hollow end.

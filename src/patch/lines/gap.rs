@@ -53,6 +53,12 @@ pub(in crate::patch) fn sections(placement: &Placement) -> [Option<&Section>; 2]
     [Some(&placement.wheel().section), placement.under().map(|under| &under.wheel().section)]
 }
 
+/// Returns the coefficient \[1/mm\] of η² in the gap at C, without skew.
+pub(in crate::patch) fn opening(placement: &Placement) -> f64 {
+    let around = |body: &Body| body.section.frame.cos / body.axle_distance();
+    0.5 * (around(placement.wheel()) + around(placement.rail()))
+}
+
 impl<'a> PatchGap<'a> {
     /// Makes the function whose negative values are the patch of a placed pair.
     pub(super) fn new(placement: &'a Placement, approach: f64, reference: Reference) -> Self {
@@ -71,9 +77,7 @@ impl<'a> PatchGap<'a> {
     }
 
     fn with(placement: &'a Placement, approach: f64, of: GapOf<'a>) -> Self {
-        let around = |body: &Body| body.section.frame.cos / body.axle_distance();
-        let opening = 0.5 * (around(placement.wheel()) + around(placement.rail()));
-        Self { placement, of, bounds: GapBounds::new(placement), approach, opening }
+        Self { placement, of, bounds: GapBounds::new(placement), approach, opening: opening(placement) }
     }
 
     /// Returns the raised curve of a rail; `None` on a roller and along normals.

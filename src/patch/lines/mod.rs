@@ -22,7 +22,7 @@ pub(super) mod rims;
 mod round;
 mod tree;
 
-pub(super) use gap::{PatchGap, sections};
+pub(super) use gap::{PatchGap, opening, sections};
 
 use gap::BoxSlopes;
 use newton::{QUADRATIC, newton_from};
