@@ -101,7 +101,8 @@ impl<'a> GapBounds<'a> {
         };
         let above = self.wheel.slopes_over(xi, eta, torn)?;
         let [sin, cos] = self.wheel.skew;
-        let along = above.along * cos + -(above.across * sin) + below.along;
+        let [along, across] = self.turned(&above);
+        let along = along + below.along;
         let lowest = above.along * (1.0 / cos) + below.across * (sin / cos) + below.along;
         let at_kinks = if sin == 0.0 {
             Interval::ALL
@@ -111,9 +112,15 @@ impl<'a> GapBounds<'a> {
         Some(BoxSlopes {
             along,
             lowest: along.cut(lowest).cut(at_kinks),
-            across: above.along * sin + above.across * cos + below.across,
+            across: across + below.across,
             level_at: self.level_at(&above, one, below.growth),
         })
+    }
+
+    /// Returns the wheel's slopes along ξ and η.
+    fn turned(&self, above: &SurfaceSlopes) -> [Interval; 2] {
+        let [sin, cos] = self.wheel.skew;
+        [above.along * cos + -(above.across * sin), above.along * sin + above.across * cos]
     }
 
     /// Returns bounds of the η \[mm\] at which a gap does not slope along η. Its slope is that of the wheel's height, divided by `facing`, and
@@ -171,9 +178,8 @@ impl<'a> GapBounds<'a> {
             }
             (None, Under::Roller(_), Side::Rail) => {
                 let above = self.wheel.slopes_over(xi, eta, Torn::No)?;
-                let [sin, cos] = self.wheel.skew;
-                let along = above.along * cos + -(above.across * sin);
-                along + (above.along * sin + above.across * cos) * turns
+                let [along, across] = self.turned(&above);
+                along + across * turns
             }
         };
         Some(slopes + facing)
@@ -190,13 +196,14 @@ impl<'a> GapBounds<'a> {
         let RaisedSlopes { xi, run, rise } = self.raised_slopes((raised, approach), sigma)?;
         let above = self.wheel.slopes_over(xi, eta, torn)?;
         let [sin, cos] = self.wheel.skew;
-        let along = (above.along * cos + -(above.across * sin)) * run + -rise;
+        let [along, across] = self.turned(&above);
+        let along = along * run + -rise;
         let lowest = above.along * (1.0 / cos) * run + -rise;
         let at_kinks = if sin == 0.0 { Interval::ALL } else { -above.across * (1.0 / sin) * run + -rise };
         Some(BoxSlopes {
             along,
             lowest: along.cut(lowest).cut(at_kinks),
-            across: above.along * sin + above.across * cos,
+            across,
             level_at: self.level_at(&above, Interval::of(1.0), Interval::of(0.0)),
         })
     }
@@ -234,8 +241,7 @@ impl<'a> GapBounds<'a> {
         let above = gap + -below;
         let over = self.wheel.slopes_over(foot + -(above * sines), eta, Torn::No)?;
         let [sin, cos] = self.wheel.skew;
-        let turned = [over.along * cos + -(over.across * sin), over.along * sin + over.across * cos];
-        let (along, across, facing) = of_body(turned, angle, above * curvature)?;
+        let (along, across, facing) = of_body(self.turned(&over), angle, above * curvature)?;
         // Where the gap does not slope along η, the wheel's slope along η is this.
         let level = -(across_below * facing);
         let at_lowest = over.along * (1.0 / cos) + -(level * (sin / cos));

@@ -221,8 +221,8 @@ impl<'a> PatchGap<'a> {
         }
     }
 
-    /// As [`Self::slopes`], whatever G is; but along normals, for each part of surfaces that end or step in the box, continued over all of it.
-    /// Where no rim passes through the box, one of the parts is its surface.
+    /// Returns bounds of the slopes of G over a box that hold for each part of surfaces that end or step in it, continued over all of the box:
+    /// where no rim passes through it, one of the parts is its surface. Along normals they are those of [`Self::slopes`], whatever G is.
     pub(super) fn torn_slopes(&self, xi: Interval, eta: Interval) -> Option<BoxSlopes> {
         if self.has_plain_bounds() {
             self.slopes_of_parts(xi, eta, Torn::Allowed)

@@ -12,7 +12,7 @@ pub(super) const FARTHEST_SINE: f64 = 2.0 * FARTHEST / (1.0 + FARTHEST * FARTHES
 /// The circle of one profile point about the axle.
 #[derive(Debug, Clone, Copy)]
 struct Circle {
-    /// Rail stands for a roller.
+    /// [`Side::Rail`] for a roller.
     body: Side,
     /// Profile abscissa in the contact frame \[mm\].
     p: f64,
@@ -99,8 +99,8 @@ impl Rims {
         self.ends().map(|(circle, _)| touched(circle)[1]).collect()
     }
 
-    /// Returns the ends over which lines of constant ξ leave a surface, and enter it again, with ξ, η and height \[mm\] at which a line touches
-    /// their circles, or comes nearest to that.
+    /// Returns the body, and ξ, η and height \[mm\] of the place where a line of constant ξ touches the circle or comes nearest to it, for each
+    /// end over which such lines leave the surface and enter it again.
     pub(in crate::patch) fn hollow_ends(&self) -> impl Iterator<Item = (Side, [f64; 3])> {
         let hollow = self.ends().filter(|(circle, outwards)| circle.tilt[0] * outwards > 0.0);
         hollow.map(|(circle, _)| (circle.body, touched(circle)))
@@ -113,6 +113,7 @@ impl Rims {
     }
 }
 
+/// Returns the circles of the wheel of a placed pair, as those of `body`: a roller is the wheel of a pair upside down.
 fn circles(placement: &Placement, body: Side) -> impl Iterator<Item = Circle> {
     let (section, axle) = (&placement.wheel().section, placement.rolling_radius());
     let (tilt, skew) = ([section.frame.sin, section.frame.cos], placement.skew_rotation());
@@ -128,6 +129,7 @@ fn circles(placement: &Placement, body: Side) -> impl Iterator<Item = Circle> {
     firsts.zip(lasts).flat_map(move |(first, last)| [circle(first, 0), circle(last, 1)]).flatten()
 }
 
+/// Returns ξ, η and height \[mm\] at which a line of constant ξ touches a circle, or comes nearest to that.
 fn touched(circle: &Circle) -> [f64; 3] {
     let Circle { tilt: [tilt, level], skew: [sin, cos], .. } = *circle;
     let t = ((sin / (tilt * cos)).atan() / 2.0).tan().clamp(-FARTHEST, FARTHEST);
